@@ -14,7 +14,7 @@ SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check extremes bench identify hil soak fuzz hostile goldens pictures docs clean
+.PHONY: help build run test check extremes bench identify hil soak fuzz hostile goldens mutants timings pages docs clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -34,8 +34,8 @@ check: tools  ## style, types, architecture, dead code, spelling, words and link
 	@PYTHONPATH=stickslip_sim $(TOOLS)/lint-imports
 	@$(TOOLS)/vulture
 	@$(TOOLS)/codespell
-	@$(TOOLS)/python -m dev.words
 	@$(TOOLS)/python -m dev.links
+	@$(TOOLS)/mkdocs build
 
 extremes: tools  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed
 	@$(HERE) python3 -m stickslip_sim extremes
@@ -68,8 +68,14 @@ hostile: tools  ## scenes near all that an event search may miss, for MINUTES=10
 goldens: tools  ## what every verb writes for every scene, into runs/goldens/TO=now; compared with those of FROM=
 	@$(HERE) python3 -m dev.goldens runs/goldens/$(or $(TO),now) $(if $(FROM),--against runs/goldens/$(FROM))
 
-pictures: tools  ## the schematic pictures of README and docs, from dev/pictures/
-	@$(HERE) python3 -m dev.pictures
+mutants: tools  ## small errors in a copy of the package, one by one: is each killed by the test that is named for it?
+	@$(HERE) --own-domain python3 -m dev.mutants
+
+timings: tools  ## start of tool and node, an hour offline: medians into runs/goldens/TO=now, beside those of FROM=
+	@$(HERE) --own-domain --shared-memory python3 -m dev.timings runs/goldens/$(or $(TO),now) $(if $(FROM),--against runs/goldens/$(FROM))
+
+pages: tools  ## what is made from the code in docs/api.md, docs/scene.md and the changelogs of the packages
+	@$(HERE) python3 -m dev.pages
 
 docs: tools  ## the pages in docs/ as a site in runs/docs/
 	@$(TOOLS)/mkdocs build && echo runs/docs/index.html

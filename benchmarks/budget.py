@@ -26,10 +26,9 @@ from numpy.typing import NDArray
 from rclpy.signals import SignalHandlerOptions
 
 from stickslip_sim.ros.node.feed_axis import FeedAxis
-from stickslip_sim.ros.process.given_parameters import GivenParameters
-from stickslip_sim.ros.process.program import SWITCH_INTERVAL, spin
-from stickslip_sim.ros.process.standstill import Standstill
-from stickslip_sim.ros.process.stop_signals import Signals
+from stickslip_sim.ros.programs import SWITCH_INTERVAL, GivenParameters, spin
+from stickslip_sim.ros.standstill import Standstill
+from stickslip_sim.ros.stop_signals import Signals
 
 from .hil.process import SCENE
 from .loop import machine

@@ -12,9 +12,9 @@ from stickslip_sim.controllers import Controller, Following, Moves, Setpoint
 from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import Event, EventKind, Sample
-from stickslip_sim.rig import Rig
-from stickslip_sim.rig.encoder import EncoderSettings
-from stickslip_sim.rig.settings import RigSettings
+from stickslip_sim.simulation import Rig
+from stickslip_sim.simulation.encoder import EncoderSettings
+from stickslip_sim.simulation.rig import RigSettings
 from stickslip_sim.solvers import exact
 
 RATE = 1000.0   # steps a second

@@ -14,15 +14,15 @@ from dataclasses import replace
 from stickslip_sim.axis import Axis
 from stickslip_sim.controllers import BranchCompensation, Cascade, Controller, Moves
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.rig.encoder import EncoderSettings
+from stickslip_sim.simulation.encoder import EncoderSettings
 
 from .closed_loop import Figures, close_loop, figures
 from .controllers_picture import draw
 from .linear_loop import most_delay
+from .page import replace_generated
 
 PAGE = pathlib.Path('docs/controllers.md')
 PICTURE = pathlib.Path('docs/images/controllers.png')
-BEGIN, END = '<!-- generated: begin -->', '<!-- generated: end -->'
 AXIS = load_scene('positioning').axis
 MOVES = [Moves(travel, feed) for travel, feed in
          ((0.0005, 0.0001), (0.001, 0.0002), (0.002, 0.0005), (0.002, 0.001), (0.005, 0.002), (0.01, 0.01))]
@@ -106,15 +106,11 @@ SECTIONS: dict[str, Callable[[], Iterator[str]]] = {
 
 def main() -> None:
     """Replace the generated part of the page, and the picture."""
-    before, begin, rest = PAGE.read_text(encoding='utf-8').partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise SystemExit(f'{PAGE} lacks {BEGIN} or {END}')
     text = '\n\n'.join(f'### {heading}\n\n' + '\n'.join(table()) for heading, table in SECTIONS.items())
-    PAGE.write_text(f'{before}{BEGIN}\n\n{text}\n\n{END}{after}', encoding='utf-8')
+    replace_generated(PAGE, f'{text}\n')
     draw({name: close_loop(AXIS, each, SLOW_FEED, SLOW_FEED.period) for name, each in controllers().items()},
          AXIS, PICTURE)
-    print(f'written: {PAGE}, {PICTURE}')
+    print(f'written: {PICTURE}')
 
 
 def _head(*cells: str) -> tuple[str, str]:

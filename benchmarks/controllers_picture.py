@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from stickslip_sim.axis import Axis
 from stickslip_sim.core.types import Mode
-from stickslip_sim.simulation.cycles import mode_spans
+from stickslip_sim.figures.cycles import mode_spans
 
 from .closed_loop import Run
 

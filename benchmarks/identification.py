@@ -20,19 +20,17 @@ import numpy as np
 
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.identify import identify
-from stickslip_sim.identification.report.cycle_phases import slip_share, usual_cycles
-from stickslip_sim.identification.report.known_friction import known_friction
-from stickslip_sim.identification.report.results import fitted_channels
+from stickslip_sim.identification.known_friction import known_friction
+from stickslip_sim.identification.measured_friction import slip_share, usual_cycles
+from stickslip_sim.identification.results import fitted_channels
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.plots.characteristics import plot_known_friction
 from stickslip_sim.plots.identified_motion import plot_fit, plot_residuals
-from stickslip_sim.plots.known_friction import plot_known_friction
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene.load import changed
 
-from . import quoted_commands
-from .page import replace_generated
-from .quoted_commands import quoted, said
+from .page import quoted, replace_generated, said, shown
 
 PAGE = pathlib.Path('docs/identification.md')
 EXAMPLES, RUNS, IMAGES = pathlib.Path('examples/identify'), pathlib.Path('runs/identify'), pathlib.Path('docs/images')
@@ -110,11 +108,6 @@ def pictures() -> None:
         else:
             plot_fit(channels, usual_cycles(found), found.restarts, IMAGES / 'identified_fit.png')
             plot_known_friction(known_friction(run, found), IMAGES / 'identified_friction.png')
-
-
-def shown(command: str) -> str:
-    """Return a command as the page shows it."""
-    return quoted_commands.shown(command, 'stickslip')
 
 
 def without_time(text: str) -> str:

@@ -26,11 +26,10 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import Scene
 from stickslip_sim.study import EvenGrid, Motion, Saltelli, Study, variation
 from stickslip_sim.study.table import lines, rows_of
-from stickslip_sim.study.uncertain_file import load_uncertain
+from stickslip_sim.study.uncertainty import load_uncertain
 
-from . import quoted_commands
-from .page import replace_generated
-from .quoted_commands import quoted, said
+from . import page
+from .page import quoted, replace_generated, said
 
 PAGE = pathlib.Path('docs/maps.md')
 RUNS, IMAGES = pathlib.Path('runs/maps'), pathlib.Path('docs/images')
@@ -210,7 +209,7 @@ def _keep_picture(command: str) -> None:
 
 def shown(command: str) -> str:
     """Return a command as the page shows it."""
-    return quoted_commands.shown(command, 'python3 -m stickslip_sim')
+    return page.shown(command, 'python3 -m stickslip_sim')
 
 
 if __name__ == '__main__':

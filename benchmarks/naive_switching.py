@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 from stickslip_sim.axis import Axis
 from stickslip_sim.extremes.shared_axes import RIGID, paper_axis, run_events
-from stickslip_sim.simulation.cycles import cycle_figures
+from stickslip_sim.figures.cycles import cycle_figures
+from stickslip_sim.report.markdown import markdown_table
 
 FEED = 0.002                   # m/s
 STEPS = 1e-4, 1e-5, 1e-6       # s
@@ -56,6 +57,7 @@ def table() -> str:
     axis = paper_axis(RIGID)
     slips = {'coasting (the engine)': exact_slip(axis),
              **{f'last sign of ẍ, steps of {step * 1e6:g} µs': naive_slip(step, axis) for step in STEPS}}
-    head = '| first slip | time / ms | travel / mm | peak speed / (mm/s) | changes of branch |\n|---|---|---|---|---|\n'
-    return head + ''.join(f'| {name} | {slip.time * 1e3:.2f} | {slip.travel * 1e3:.4f} | {slip.peak_speed * 1e3:.3f} | '
-                          f'{slip.switches} |\n' for name, slip in slips.items())
+    heads = 'first slip', 'time / ms', 'travel / mm', 'peak speed / (mm/s)', 'changes of branch'
+    return '\n'.join(markdown_table(heads, [
+        (name, f'{slip.time * 1e3:.2f}', f'{slip.travel * 1e3:.4f}', f'{slip.peak_speed * 1e3:.3f}', str(slip.switches))
+        for name, slip in slips.items()])) + '\n'

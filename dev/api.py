@@ -1,9 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`python3 -m dev.api` writes the lists of docs/api.md: every public name, taken from what the programs themselves use.
-
-A test compares the page with them, so that no name changes unseen.
-"""
+"""The lists of docs/api.md: every public name, taken from what the programs themselves use."""
 
 import inspect
 import re
@@ -13,23 +10,24 @@ from typing import Any
 import click
 
 import stickslip_sim
+from benchmarks.page import replaced
+from stickslip_sim.bags import topics
 from stickslip_sim.cli.main import stickslip as tool
-from stickslip_sim.recording import topics
 from stickslip_sim.scene.schema import PARAMETERS
 
 from .files import ROOT
 
 PAGE = ROOT / 'docs/api.md'
 _MESSAGES = ROOT / 'stickslip_msgs'
-_OF_THE_NODE, _OF_THE_PLAYER = 'ros/services/*.py', 'ros/replay/player_services.py'
+_OF_THE_NODE, _OF_THE_PLAYER = 'ros/node/*.py', 'ros/replay/node.py'
 _SERVICE = re.compile(r"create_service\((?:srv\.)?(\w+), '(~/\w+)'")
 _TYPES = {'Trigger': 'std_srvs', 'SetBool': 'std_srvs', 'Step': 'stickslip_msgs', 'InjectFault': 'stickslip_msgs'}
-_FIELD = re.compile(r'^([\w/]+(?:\[\])?) +(\w+)$')
+_FIELD = re.compile(r'^([\w/]+(?:\[\])?) +(\w+)$', re.MULTILINE)
 _OF_OTHER_ROOMS = {   # attributes that no user needs: between rooms of the package, and not promised
     'Scene': {'inputs', 'make_rig', 'make_simulator', 'normal_force', 'rig', 'sources'},
     'Simulator': {'checkpoint', 'event_counts', 'require_sound', 'restore', 'root_iterations', 'skip', 'take_samples'},
 }
-_CONSTANT = re.compile(r'^\w+ +([A-Z][A-Z0-9_]*) *= *(-?\d+)')
+_CONSTANT = re.compile(r'^\w+ +([A-Z][A-Z0-9_]*) *= *(-?\d+)', re.MULTILINE)
 
 
 def verbs() -> str:
@@ -68,8 +66,8 @@ def messages() -> str:
     rows = []
     for path in sorted((*_MESSAGES.glob('msg/*.msg'), *_MESSAGES.glob('srv/*.srv'))):
         parts = path.read_text(encoding='utf-8').split('---\n')
-        fields = ' → '.join(', '.join(f'`{name}` {kind}' for kind, name in _matches(_FIELD, part)) for part in parts)
-        constants = ', '.join(f'{name} {number}' for name, number in _matches(_CONSTANT, ''.join(parts)))
+        fields = ' → '.join(', '.join(f'`{name}` {kind}' for kind, name in _FIELD.findall(part)) for part in parts)
+        constants = ', '.join(f'{name} {number}' for name, number in _CONSTANT.findall(''.join(parts)))
         rows.append((f'`{path.parent.name}/{path.stem}`', fields, constants))
     return _table(('interface', 'fields (→ of the answer)', 'constants'), rows)
 
@@ -90,21 +88,12 @@ LISTS: dict[str, Callable[[], str]] = {
 }
 
 
-def page(text: str) -> str:
+def page() -> str:
     """Return the text of the page with the lists of today; raises ValueError where it has no place for one."""
+    text = PAGE.read_text(encoding='utf-8')
     for name, made in LISTS.items():
-        begin, end = f'<!-- {name}: begin -->', f'<!-- {name}: end -->'
-        before, found, rest = text.partition(begin)
-        _, closed, after = rest.partition(end)
-        if not found or not closed:
-            raise ValueError(f'{PAGE.name} lacks {begin} or {end}')
-        text = f'{before}{begin}\n\n{made()}\n{end}{after}'
+        text = replaced(text, name, made())
     return text
-
-
-def main() -> None:
-    """Write the page."""
-    PAGE.write_text(page(PAGE.read_text(encoding='utf-8')), encoding='utf-8')
 
 
 def _with_their_own(command: click.Command) -> Iterator[tuple[str, click.Command]]:
@@ -129,24 +118,14 @@ def _kind(value: Any) -> str:
     if hasattr(value, '_fields'):
         return 'a tuple of ' + ', '.join(f'`{name}`' for name in value._fields)
     if inspect.isfunction(value):
-        return f'`({_signature(value)})`'
+        bare = [one.replace(annotation=inspect.Parameter.empty) for one in inspect.signature(value).parameters.values()]
+        return f'`{inspect.Signature(bare)}`'
     if issubclass(value, BaseException):
-        return f'an error, a kind of `{value.__base__.__name__}`' + _exit_code(value)
+        code = getattr(value, 'exit_code', None)
+        return f'an error, a kind of `{value.__base__.__name__}`' + ('' if code is None else f', exit code {code}')
     if hasattr(value, '__members__'):
         return 'one of ' + ', '.join(f'`{name}`' for name in value.__members__)
     return 'a class with ' + ', '.join(f'`{name}`' for name in _public(value))
-
-
-def _signature(function: Callable[..., Any]) -> str:
-    """Return the parameters of a function with their defaults, without types."""
-    plain = inspect.signature(function)
-    bare = [one.replace(annotation=inspect.Parameter.empty) for one in plain.parameters.values()]
-    return str(plain.replace(parameters=bare, return_annotation=inspect.Signature.empty))[1:-1]
-
-
-def _exit_code(error: Any) -> str:
-    code = getattr(error, 'exit_code', None)
-    return '' if code is None else f', exit code {code}'
 
 
 def _public(kind: type) -> list[str]:
@@ -162,17 +141,6 @@ def quality(topic: topics.Topic) -> str:
     return f'{qos.reliability.replace("_", " ")}, keep last {qos.depth}{durability}'
 
 
-def _matches(pattern: re.Pattern[str], text: str) -> Iterator[Sequence[str]]:
-    for line in text.splitlines():
-        found = pattern.match(line)
-        if found:
-            yield found.groups()
-
-
 def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     lines = ['| ' + ' | '.join(heads) + ' |', '|' + '---|' * len(heads)]
     return '\n'.join([*lines, *('| ' + ' | '.join(row) + ' |' for row in rows)]) + '\n'
-
-
-if __name__ == '__main__':
-    main()

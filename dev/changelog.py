@@ -1,9 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`python3 -m dev.changelog` writes the CHANGELOG.rst of both packages from CHANGELOG.md, as bloom reads it (REP 132).
-
-A test compares them.
-"""
+"""The CHANGELOG.rst of both packages, made from CHANGELOG.md, as bloom reads it (REP 132)."""
 
 import re
 
@@ -21,9 +18,9 @@ _READ_AS_MARKUP = re.compile(r'[\\*`|]|_(?!\w)')
 _BEFORE, _AFTER = '\'"([{<-/: \n', '\'")]}>-/\\:.,;!? \n'    # what may stand beside markup
 
 
-def changelog(package: str, markdown: str) -> str:
+def changelog(package: str, markdown: str = '') -> str:
     """Return a package's changelog in reStructuredText; raises ValueError where the Markdown has no release."""
-    _, *parts = _RELEASE.split(markdown)
+    _, *parts = _RELEASE.split(markdown or SOURCE.read_text(encoding='utf-8'))
     if not parts:
         raise ValueError(f'{SOURCE.name} has no heading "## X.Y.Z - YYYY-MM-DD"')
     title = f'Changelog for package {package}'
@@ -58,14 +55,3 @@ def _without_code_in_bold(match: re.Match[str]) -> str:
 
 def _escaped(text: str) -> str:
     return _READ_AS_MARKUP.sub(r'\\\g<0>', text)
-
-
-def main() -> None:
-    """Write the files."""
-    markdown = SOURCE.read_text(encoding='utf-8')
-    for package in PACKAGES:
-        (ROOT / package / 'CHANGELOG.rst').write_text(changelog(package, markdown), encoding='utf-8')
-
-
-if __name__ == '__main__':
-    main()

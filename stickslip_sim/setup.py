@@ -23,7 +23,7 @@ NODES = ['cascade_controller', 'compensating_controller', 'health', 'replay_node
 PROGRAM = """{python}
 import sys
 try:
-    from {module} import main
+    from {module} import {function} as main
 except ModuleNotFoundError as error:
     if error.name != '{package}':
         raise
@@ -46,8 +46,8 @@ class Programs:
         """
         python, _, _ = contents.partition('\n')
         for name in (script_name, *NODES):
-            module = f'{NAME}.ros.{name}' if name in NODES else f'{NAME}.__main__'
-            text = PROGRAM.format(python=python, module=module, package=NAME, name=name)
+            module, function = ('ros.executables', name) if name in NODES else ('__main__', 'main')
+            text = PROGRAM.format(python=python, module=f'{NAME}.{module}', function=function, package=NAME, name=name)
             super().write_script(name, text, mode, *others)
 
 
@@ -79,7 +79,7 @@ setup(
     maintainer_email='stickslip@example.org',
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={NAME: ['py.typed', 'scenes/*.yaml', 'recording/stickslip_msgs/*.msg', 'ros/client/*.xml']},
+    package_data={NAME: ['py.typed', 'scenes/*.yaml', 'bags/stickslip_msgs/*.msg', 'ros/*.xml']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),

@@ -23,14 +23,14 @@ from rclpy.serialization import serialize_message
 from rclpy.signals import SignalHandlerOptions
 
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, FrictionForce, SliderState
+from stickslip_sim.bags import topics
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.realtime.pacing import Pacer, wake_precisely
 from stickslip_sim.realtime.scheduling import Scheduling, StepThread
 from stickslip_sim.realtime.timing_statistics import TimingStatistics
-from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run, topics
-from stickslip_sim.ros.node.conversion import set_stamp
-from stickslip_sim.ros.node.endpoints import publisher, subscription
-from stickslip_sim.ros.process.program import make_executor
+from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run
+from stickslip_sim.ros.node.endpoints import publisher, set_stamp, subscription
+from stickslip_sim.ros.programs import make_executor
 
 POLL = 0.1                # s
 SWITCH_INTERVAL = 5e-5    # s, as in sim_node

@@ -21,9 +21,9 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from stickslip_msgs.msg import DriveVelocity, SliderState
-from stickslip_sim.recording import topics
+from stickslip_sim.bags import topics
 from stickslip_sim.ros.node.endpoints import publisher
-from stickslip_sim.ros.process.program import make_executor
+from stickslip_sim.ros.programs import make_executor
 
 from ..loop import cpu_seconds
 from .process import waited_seconds

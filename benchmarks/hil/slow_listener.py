@@ -15,9 +15,9 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from stickslip_msgs.msg import SliderState
-from stickslip_sim.recording import topics
+from stickslip_sim.bags import topics
 from stickslip_sim.ros.node.endpoints import subscription
-from stickslip_sim.ros.process.program import make_executor
+from stickslip_sim.ros.programs import make_executor
 
 TAKES = 0.05    # s for a state
 

@@ -4,7 +4,7 @@
 
 Each slip of the model from the measured arrest before it is read off by the rule of the measured ones, as `identify`
 prints it.  The scene found, left to itself, has slips of its own: off both motions they are read by the same rule
-(`runs/slips.py`), the stick before each and the largest friction force in it.
+(`figures/slips.py`), the stick before each and the largest friction force in it.
 """
 
 import time
@@ -15,10 +15,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stickslip_sim.core.arrays import Columns
+from stickslip_sim.figures.slips import slips_of
 from stickslip_sim.identification.identified import SlipFit
 from stickslip_sim.identification.identify import identify
-from stickslip_sim.runs import Columns, simulate
-from stickslip_sim.runs.slips import slips_of
+from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene, scene_from_values
 
 from .lugre import LuGreAxis

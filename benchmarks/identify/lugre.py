@@ -17,8 +17,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from stickslip_sim.core.arrays import Numbers
-from stickslip_sim.runs import Columns
+from stickslip_sim.core.arrays import Columns, Numbers
 
 _TOLERANCE = 1e-9                         # relative
 _SMALLEST = (1e-13, 1e-11, 1e-13)         # m, m/s, m

@@ -9,11 +9,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.random import Generator
 
-from stickslip_sim.core.arrays import Numbers
-from stickslip_sim.identification.given.readings import drives_directly
+from stickslip_sim.core.arrays import Columns, Numbers
+from stickslip_sim.identification.readings import drives_directly
 from stickslip_sim.recording import read_run, write_measured
 from stickslip_sim.recording.measured_run import MeasuredRun
-from stickslip_sim.runs import Columns, simulate
+from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene
 
 

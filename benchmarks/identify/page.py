@@ -9,6 +9,7 @@ from statistics import median
 from typing import TypeVar
 
 from stickslip_sim.identification.identified import FOUND
+from stickslip_sim.report.markdown import markdown_table
 
 from .axes import FARTHEST, FREE, LEAST_SLIPS, NEAREST
 from .foreign import ForeignOutcome
@@ -53,25 +54,24 @@ def page(outcomes: Sequence[Outcome], others: Mapping[str, Sequence[Outcome]],
 def _marks(outcomes: Sequence[Outcome]) -> list[str]:
     parameters = all_parameters(outcomes)
     low, high = COVERAGE_MARK
-    return [
-        '| figure | measured | mark |', '|---|---|---|',
-        f'| parameters found | {_percent(each.is_found for each in parameters)} | {FOUND_MARK} % |',
-        f'| axes of which all is found | {sum(each.is_found for each in outcomes)} of {len(outcomes)} | – |',
-        f'| parameters within {CLOSE:.0%} | {_percent(each.error <= CLOSE for each in parameters)} | – |',
-        f'| parameters covered | {_percent(each.is_covered for each in parameters)} | {low} to {high} % |',
-        f'| half of the interval, median | {share(median(each.width for each in parameters))} | – |',
-        f'| error, median | {share(median(each.error for each in parameters))} | – |',
-        f'| axes whose model is said to fit | {sum(each.fits for each in outcomes)} of {len(outcomes)} | – |',
-        f'| processor time, median | {median(each.seconds for each in outcomes):.1f} s | {TIME_MARK:g} s |',
-        f'| processor time, longest | {max(each.seconds for each in outcomes):.1f} s | – |',
-        f'| simulations, median | {median(each.runs for each in outcomes):,.0f} | – |']
+    return markdown_table(('figure', 'measured', 'mark'), [
+        ('parameters found', _percent(each.is_found for each in parameters), f'{FOUND_MARK} %'),
+        ('axes of which all is found', f'{sum(each.is_found for each in outcomes)} of {len(outcomes)}', '–'),
+        (f'parameters within {CLOSE:.0%}', _percent(each.error <= CLOSE for each in parameters), '–'),
+        ('parameters covered', _percent(each.is_covered for each in parameters), f'{low} to {high} %'),
+        ('half of the interval, median', share(median(each.width for each in parameters)), '–'),
+        ('error, median', share(median(each.error for each in parameters)), '–'),
+        ('axes whose model is said to fit', f'{sum(each.fits for each in outcomes)} of {len(outcomes)}', '–'),
+        ('processor time, median', f'{median(each.seconds for each in outcomes):.1f} s', f'{TIME_MARK:g} s'),
+        ('processor time, longest', f'{max(each.seconds for each in outcomes):.1f} s', '–'),
+        ('simulations, median', f'{median(each.runs for each in outcomes):,.0f}', '–')])
 
 
 def _by_sensors(others: Mapping[str, Sequence[Outcome]]) -> list[str]:
-    rows = [f'| {words} | {sum(each.fits for each in of)} of {len(of)} | {sum(each.is_found for each in of)} | '
-            f'{share(max(_far(of), default=0.0))} |' for words, of in others.items()]
-    return ['| sensors | said to fit | of which all is found | farthest from the truth of what is called found |',
-            '|---|---|---|---|', *rows]
+    heads = 'sensors', 'said to fit', 'of which all is found', 'farthest from the truth of what is called found'
+    return markdown_table(heads, [
+        (words, f'{sum(each.fits for each in of)} of {len(of)}', str(sum(each.is_found for each in of)),
+         share(max(_far(of), default=0.0))) for words, of in others.items()])
 
 
 def _far(outcomes: Sequence[Outcome]) -> Iterable[float]:
@@ -81,20 +81,19 @@ def _far(outcomes: Sequence[Outcome]) -> Iterable[float]:
 def _by_model(outcomes: Sequence[Outcome]) -> list[str]:
     groups = _grouped((': '.join(model), outcome) for outcome in outcomes
                       for model in zip(('contact', 'static', 'kinetic'), outcome.models, strict=True))
-    rows = [f'| {name} | {len(of)} | {sum(each.is_found for each in of)} | '
-            f'{_percent(each.is_covered for each in all_parameters(of))} | '
-            f'{median(each.seconds for each in of):.1f} s |' for name, of in groups]
-    return ['| model | axes | of which all is found | parameters covered | processor time, median |',
-            '|---|---|---|---|---|', *rows]
+    heads = 'model', 'axes', 'of which all is found', 'parameters covered', 'processor time, median'
+    return markdown_table(heads, [
+        (name, str(len(of)), str(sum(each.is_found for each in of)),
+         _percent(each.is_covered for each in all_parameters(of)), f'{median(each.seconds for each in of):.1f} s')
+        for name, of in groups])
 
 
 def _by_parameter(outcomes: Sequence[Outcome]) -> list[str]:
     groups = _grouped((parameter.name, parameter) for parameter in all_parameters(outcomes))
-    rows = [f'| `{name}` | {len(of)} | {_percent(each.is_found for each in of)} | '
-            f'{_percent(each.is_covered for each in of)} | {share(median(each.error for each in of))} | '
-            f'{share(median(each.width for each in of))} |' for name, of in groups]
-    return ['| parameter | times | found | covered | error, median | half of the interval, median |',
-            '|---|---|---|---|---|---|', *rows]
+    heads = 'parameter', 'times', 'found', 'covered', 'error, median', 'half of the interval, median'
+    return markdown_table(heads, [
+        (f'`{name}`', str(len(of)), _percent(each.is_found for each in of), _percent(each.is_covered for each in of),
+         share(median(each.error for each in of)), share(median(each.width for each in of))) for name, of in groups])
 
 
 def _grouped(named: Iterable[tuple[str, Entry]]) -> list[tuple[str, list[Entry]]]:

@@ -5,6 +5,8 @@
 from collections.abc import Mapping, Sequence
 from statistics import median
 
+from stickslip_sim.report.markdown import markdown_table
+
 from .foreign import ForeignOutcome
 from .mujoco_sysid import INSTALL, is_installed
 from .outcomes import CLOSE
@@ -25,9 +27,9 @@ def beside(rivals: Mapping[str, Sequence[RivalOutcome]]) -> list[str]:
     """Return the section on other methods."""
     missing = [] if is_installed() else [f'`mujoco.sysid` is not installed here: `{INSTALL}`.', '']
     return ['## Beside others', '', 'The same data, starts and ranges, one core, one after the other:', '',
-            f'| method | axes | parameters within {CLOSE:.0%} | error, median | error, largest | processor time, median'
-            ' | simulations, median |', '|---|---|---|---|---|---|---|',
-            *(_rival(name, of) for name, of in rivals.items()), '', *missing, *_LEGEND, '']
+            *markdown_table(('method', 'axes', f'parameters within {CLOSE:.0%}', 'error, median', 'error, largest',
+                             'processor time, median', 'simulations, median'),
+                            [_rival(name, of) for name, of in rivals.items()]), '', *missing, *_LEGEND, '']
 
 
 def foreign_data(foreign: ForeignOutcome) -> list[str]:
@@ -45,16 +47,14 @@ def foreign_data(foreign: ForeignOutcome) -> list[str]:
         *([f'* … and {more} more statements.'] if (more := len(foreign.statements) - _STATEMENTS) > 0 else []),
         f'* Slips: {foreign.true_slips} of the LuGre axis, {foreign.found_slips} of the scene found.',
         f'* Processor time: {foreign.seconds:.1f} s.', '',
-        '| of the slips, each from the measured arrest before it | difference, median | largest | mark |',
-        '|---|---|---|---|', *single, *alone, '',
+        *markdown_table(('of the slips, each from the measured arrest before it', 'difference, median', 'largest',
+                         'mark'), [*single, *alone]), '',
         'Left to itself the scene comes to the next change of the feed at another moment of its cycle, and the slip',
         'there is another one.', '']
 
 
-def _row(title: str, of: Sequence[float], mark: str) -> str:
-    if not of:
-        return f'| {title} | – | – | {mark} |'
-    return f'| {title} | {100.0 * median(of):.1f} % | {100.0 * of[-1]:.1f} % | {mark} |'
+def _row(title: str, of: Sequence[float], mark: str) -> list[str]:
+    return [title, *([f'{100.0 * median(of):.1f} %', f'{100.0 * of[-1]:.1f} %'] if of else ['–', '–']), mark]
 
 
 def share(part: float) -> str:
@@ -62,9 +62,9 @@ def share(part: float) -> str:
     return f'{100.0 * part:.0f} %' if part >= 0.995 else f'{100.0 * part:.2g} %'
 
 
-def _rival(name: str, of: Sequence[RivalOutcome]) -> str:
+def _rival(name: str, of: Sequence[RivalOutcome]) -> list[str]:
     errors = [error for each in of for error in each.errors]
     close = 100.0 * sum(error <= CLOSE for error in errors) / len(errors) if errors else 0.0
-    return (f'| {name} | {len(of)} | {close:.0f} % of {len(errors)} | {share(median(errors)) if errors else "–"} | '
-            f'{share(max(errors)) if errors else "–"} | {median(each.seconds for each in of):.1f} s | '
-            f'{median(each.runs for each in of):,.0f} |')
+    return [name, str(len(of)), f'{close:.0f} % of {len(errors)}',
+            *([share(median(errors)), share(max(errors))] if errors else ['–', '–']),
+            f'{median(each.seconds for each in of):.1f} s', f'{median(each.runs for each in of):,.0f}']

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from statistics import median
 
 from stickslip_sim.identification.identified import FOUND
+from stickslip_sim.report.markdown import markdown_table
 
 from .outcomes import FAR, INTERVALS, Outcome, ParameterOutcome, all_parameters
 from .page_beside import share
@@ -27,19 +28,18 @@ def of_every_kind(varied: Sequence[Outcome]) -> list[str]:
         ' force, or driven by a motor without a spring.',
         'What such a run does not show must be called not identifiable, and a right model must not be rejected (each'
         f' test may: {_REJECTED:.2%}).', '',
-        '| axes | number | rejected | called found | of these covered | far off | processor time, median |',
-        '|---|---|---|---|---|---|---|',
-        *(_row(words, of) for words, of in groups.items() if of), '',
+        *markdown_table(('axes', 'number', 'rejected', 'called found', 'of these covered', 'far off',
+                         'processor time, median'), [_row(words, of) for words, of in groups.items() if of]), '',
         f'* Far off: called found, and off by more than {FAR:.0%} of the truth and {INTERVALS:g} intervals.', '',
         *_listed(varied)]
 
 
-def _row(words: str, of: Sequence[Outcome]) -> str:
+def _row(words: str, of: Sequence[Outcome]) -> list[str]:
     parameters = all_parameters(of)
     found = [each for each in parameters if each.kind == FOUND]
-    return (f'| {words} | {len(of)} | {sum(not each.fits for each in of)} | {_part(found, parameters)} | '
-            f'{_part([each for each in found if each.is_covered], found)} | {sum(each.is_far for each in found)} | '
-            f'{median(each.seconds for each in of):.1f} s |')
+    return [words, str(len(of)), str(sum(not each.fits for each in of)), _part(found, parameters),
+            _part([each for each in found if each.is_covered], found), str(sum(each.is_far for each in found)),
+            f'{median(each.seconds for each in of):.1f} s']
 
 
 def _part(some: Sequence[ParameterOutcome], of: Sequence[ParameterOutcome]) -> str:

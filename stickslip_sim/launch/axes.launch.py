@@ -14,7 +14,7 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.substitutions import FindPackageShare
 
-from stickslip_sim.ros.process.launch_arguments import check_arguments
+from stickslip_sim.ros.launch_arguments import check_arguments
 
 # Those of sim.launch.py that are not of one axis alone: it declares them too, but --show-args cannot see that.
 ARGUMENTS = {

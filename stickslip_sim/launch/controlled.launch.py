@@ -21,7 +21,7 @@ from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
 
-from stickslip_sim.ros.process.launch_arguments import check_arguments
+from stickslip_sim.ros.launch_arguments import check_arguments
 
 ARGUMENTS = {
     'scene': ('positioning', 'shipped scene of the axis, or a parameter file'),

@@ -10,7 +10,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
-from stickslip_sim.ros.process.launch_arguments import check_arguments
+from stickslip_sim.ros.launch_arguments import check_arguments
 
 ARGUMENTS = {
     'bag': (None, 'folder of the run, or its .mcap file'),

@@ -16,7 +16,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
-from stickslip_sim.ros.process.launch_arguments import check_arguments
+from stickslip_sim.ros.launch_arguments import check_arguments
 
 ARGUMENTS = {
     'scene': ('positioning', 'shipped scene, or a parameter file'),

@@ -15,7 +15,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
-from stickslip_sim.ros.process.launch_arguments import check_arguments
+from stickslip_sim.ros.launch_arguments import check_arguments
 
 ARGUMENTS = {
     'scene': ('paper_fig8', 'shipped scene, or a parameter file'),

@@ -9,18 +9,24 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.advise.absent import absent_parts
-from stickslip_sim.advise.advice import Advice, advise
-from stickslip_sim.advise.advice_report import advice_as_json, is_needed, text_lines
-from stickslip_sim.advise.duration import default_duration
-from stickslip_sim.advise.figure_distance import Distance, distance_between, event_difference
-from stickslip_sim.advise.parts import parts_of, without_idle_sinusoids
-from stickslip_sim.advise.recommendation import best_trial, least_scene
-from stickslip_sim.advise.solver_settings import solver_settings
-from stickslip_sim.advise.trial_runs import ExactRun, Trial, costs, reference_of, try_changes
+from stickslip_sim.advise.advice import Advice, advise, best_trial, least_scene, sensitivities_of
+from stickslip_sim.advise.parts import absent_parts, parts_of, without_idle_sinusoids
+from stickslip_sim.advise.report import advice_as_values, advice_report, is_needed, numbers_as_values, numbers_report
+from stickslip_sim.advise.trial_runs import (
+    ExactRun,
+    Trial,
+    costs,
+    default_duration,
+    reference_of,
+    solver_settings,
+    try_changes,
+)
 from stickslip_sim.bench.measure import Cost
 from stickslip_sim.cli.main import run
+from stickslip_sim.figures.distance import Distance, distance_between, event_difference
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.report.text import text_lines
+from stickslip_sim.report.values import json_text
 from stickslip_sim.scene import Scene, changed, scene_from_values
 from tests.support.tool import Capture
 
@@ -195,18 +201,18 @@ def test_the_scene_names_its_own_solver_among_the_others() -> None:
 def test_a_part_of_what_is_left_out_goes_with_it() -> None:
     """The contact damper alone is needed, but not without the contact."""
     advice = advise(scene('positioning'), 0.2, 4.0, rounds=1)
-    rows = {line.split('  ')[0]: line for line in text_lines(advice)}
+    rows = {line.split('  ')[0]: line for line in text_lines(advice_report(advice))}
     assert rows['contact compliance'].endswith(' no')
     assert rows['contact damping'].endswith(' goes with another')
 
 
 def test_advice_as_text_and_json(advised: Advice) -> None:
-    text = '\n'.join(text_lines(advised))
+    text = '\n'.join(text_lines(advice_report(advised)))
     for words in ('paper_fig7: stick-slip', 'breakpoint of mu_k at 17.5 mm/s', 'not in the scene',
                   'identical to the bit',
                   'fixed_step euler, step 1 ms'):
         assert words in text
-    data = json.loads(json.dumps(advice_as_json(advised, advised.least.changes), allow_nan=False))
+    data = json.loads(json_text(advice_as_values(advised, advised.least.changes)))
     assert data['least']['largest'] <= data['tolerance'] == 1e-3
     assert [part['needed'] for part in data['parts']] == [is_needed(advised, k) for k in range(len(advised.parts))]
 
@@ -245,3 +251,30 @@ def test_wrong_use(arguments: list[str], words: list[str], capsys: Capture) -> N
     out, err = capsys.readouterr()
     assert (out, err.count('\n')) == ('', 1)
     assert all(word in err for word in words)
+
+
+# Which numbers of a scene matter most.
+
+def test_the_numbers_of_a_limit_cycle_by_their_effect() -> None:
+    """The forces of a cycle go with friction: one percent more of N mu_s is at least one of the period."""
+    found = sensitivities_of(reference_of(load_scene('paper_fig7'), 4.0))
+    assert found is not None
+    head, first, *rest = text_lines(numbers_report(found))
+    assert head.split()[-6:] == ['stick', 'share', 'peak', 'speed', 'break-away', 'force']
+    assert first.split() == ['friction.static.limit', '2.386', '2.386', '1.128', '4.016', '1.379']
+    assert len(rest) == 10
+    assert (numbers_as_values(found) or {})['axis.mass']['period'] < 0.0
+
+
+def test_a_scene_without_a_limit_cycle_has_the_time_of_an_event() -> None:
+    found = sensitivities_of(reference_of(load_scene('positioning'), 4.0))
+    assert found is not None
+    assert found.figures[0].endswith('.time')
+    lines = text_lines(numbers_report(found))
+    assert not any(line.startswith('initial.') for line in lines)   # of 0 there is no percent
+
+
+def test_a_scene_at_rest_has_none() -> None:
+    found = sensitivities_of(reference_of(load_scene('paper_fig7', {'drive.velocity': 0.0}), 1.0))
+    assert found is None
+    assert numbers_as_values(found) is None

@@ -2,19 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a slip ends, ẋ = 0: stick, or a reversal at once where a rigid contact cannot hold |F_d + F_e| at N mu_s(0)."""
 
+import math
 from dataclasses import replace
 
 import pytest
 
 from stickslip_sim.axis import RigidContact
-from stickslip_sim.axis.codes import ACCELERATING, ARREST, DECELERATING, REVERSE, STICK
+from stickslip_sim.axis.codes import ACCELERATING, ARREST, BREAKAWAY, COASTING, DECELERATING, REVERSE, STICK
 from stickslip_sim.axis.forces import applied_force
 from stickslip_sim.axis.layout import Parameters
 from stickslip_sim.axis.rows import EventRow, Events
 from stickslip_sim.axis.state_record import State
-from stickslip_sim.axis.transitions import apply_inputs, arrest
+from stickslip_sim.axis.transitions import apply_inputs, arrest, release
+from stickslip_sim.friction import KineticTable
 from tests.support.axes import Contact
-from tests.support.plain_axes import COMPLIANT, CONVENTIONAL, FRICTION, SIDED, STATIC, parameters, slip, state
+from tests.support.plain_axes import BACKWARD, COMPLIANT, CONVENTIONAL, FRICTION, SIDED, STATIC, parameters, slip, state
 
 both_ways = pytest.mark.parametrize('direction', [1.0, -1.0])
 HIGHER = replace(FRICTION, static=replace(STATIC, initial=0.375))      # above mu_k(0) = 0.25
@@ -125,3 +127,114 @@ def test_a_swing_is_forgotten_where_something_holds(contact: Contact) -> None:
 def test_what_rounding_left_of_the_speed_is_gone() -> None:
     s = slip(parameters(), DECELERATING, 1e-17, push=3.0)
     assert (arrested(parameters(), s).velocity, s.velocity) == (0.0, 0.0)
+
+
+# How stick ends: exactly at |F| = N mu_s(t⁻), in the direction of F; docs/model.md, "Rules at the edges".
+
+def released(p: Parameters, s: State) -> EventRow:
+    events = Events(1)
+    release(p, s, events, 0)
+    return events.rows[0]
+
+
+@both_ways
+@pytest.mark.parametrize(('rest', 'static'), [(math.inf, 0.5), (2.0, 0.5 - 0.25 / math.e), (0.0, 0.25)])
+def test_friction_is_the_static_limit_and_the_excess_makes_up_for_it(rest: float, static: float, direction: float
+                                                                     ) -> None:
+    """Reached from below by a spring that is stretched on."""
+    p = parameters()
+    s = state(mode=STICK, spring=direction * 64.0 * static / 1024.0, v=direction * 0.25, rest=rest,
+              f=-direction * 32.0 * 0.25, second=3.0, fraction=0.5, origin=10.0, position=1.0, drive=1.5)
+    row = released(p, s)
+    assert (row.kind, row.mode, row.direction, row.rest) == (BREAKAWAY, ACCELERATING, direction, rest)
+    assert (row.second, row.fraction, row.position, row.drive, row.velocity) == (3.0, 0.5, 11.0, 11.5, 0.0)
+    assert row.static == pytest.approx(static, rel=1e-15)
+    assert row.friction == pytest.approx(direction * 64.0 * static, rel=1e-15)
+    assert row.drive_force == pytest.approx(direction * (64.0 * static + 32.0 * 0.25), rel=1e-15)
+    assert s.excess == pytest.approx(static - 0.25, abs=1e-15)
+    assert (s.mode, s.direction, s.acceleration, s.rest) == (ACCELERATING, direction, 0.0, 0.0)
+
+
+@both_ways
+def test_what_is_beyond_the_limit_accelerates_the_slider(direction: float) -> None:
+    """After a jump of the force, by 4 N: m ẍ = |F| − N mu_s; without branches |F| − N mu_k."""
+    for friction, beyond in ((parameters().branches, 4.0), (0.0, 4.0 + 32.0 - 16.0)):
+        p = parameters() if friction else parameters(friction=CONVENTIONAL)
+        s = state(mode=STICK, f=direction * 36.0, rest=math.inf)
+        assert released(p, s).friction == direction * 32.0
+        assert s.acceleration == direction * beyond / 2.0
+
+
+@both_ways
+def test_a_compliant_contact_is_released_by_its_own_force(direction: float) -> None:
+    """F_c = c_c δ + h_c ẋ = N mu_s; the drive has 35 N, and m ẍ = 35 N − N mu_s goes on."""
+    p = parameters(contact=COMPLIANT)
+    deflection = (32.0 - 64.0 * 0.125) / 4096.0
+    s = state(mode=STICK, velocity=direction * 0.125, deflection=direction * deflection, f=direction * 39.0,
+              acceleration=direction * 1.5, rest=math.inf)
+    row = released(p, s)
+    assert (row.direction, row.friction, row.velocity) == (direction, direction * 32.0, direction * 0.125)
+    assert s.acceleration == direction * (39.0 - 32.0 * 0.125 - 32.0) / 2.0
+    assert (s.mode, s.excess, s.deflection) == (ACCELERATING, (0.5 - 0.1875) / 0.75, 0.0)
+
+
+def test_a_compliant_stick_may_end_by_the_force_of_the_drive() -> None:
+    """F_d + F_e = N mu_s, not what the contact carries."""
+    p = parameters(contact=replace(COMPLIANT, ends_by_drive=True))
+    s = state(mode=STICK, velocity=-0.125, deflection=0.001, f=-36.0, rest=math.inf)    # F_d = 4 N
+    row = released(p, s)
+    assert (row.direction, row.friction) == (-1.0, -32.0)
+    # the spring is relieved as the slider moves: the slip begins on the upper edge of its band, and goes inwards
+    assert (s.mode, s.acceleration, s.excess) == (COASTING, 0.0, (0.5 - 0.1875) / 0.75)
+
+
+def test_a_slip_by_the_force_of_the_drive_goes_along_the_velocity() -> None:
+    """Where F_d + F_e ends a stick that moves the other way: friction was +32 N, and opposes the motion from now on."""
+    p = parameters(contact=replace(COMPLIANT, ends_by_drive=True))
+    s = state(mode=STICK, velocity=-0.125, deflection=0.0, rest=math.inf, f=28.0)      # F_d = 4 N
+    row = released(p, s)
+    assert (row.direction, row.friction) == (-1.0, 32.0)
+    # friction pushes forwards with the drive: the slider, moving backwards, is slowed down
+    assert (s.mode, s.direction, s.acceleration) == (DECELERATING, -1.0, (32.0 + 64.0 * 0.1875) / 2.0)
+
+
+@pytest.mark.parametrize(('force', 'rest', 'direction', 'static'), [
+    (32.0, math.inf, 1.0, 0.5), (-48.0, math.inf, -1.0, 0.75), (16.0, 0.0, 1.0, 0.25), (-24.0, 0.0, -1.0, 0.375)])
+def test_each_direction_has_its_own_limit(force: float, rest: float, direction: float, static: float) -> None:
+    """It holds while −N mu_s⁻ <= F <= N mu_s⁺."""
+    p = parameters(friction=SIDED)
+    s = state(mode=STICK, f=force, f_rate=direction, rest=rest)
+    row = released(p, s)
+    assert (row.direction, row.static, row.friction) == (direction, static, force)
+    assert s.excess == static - (0.25 if direction > 0.0 else 0.125)
+
+
+@both_ways
+def test_a_limit_of_0_is_met_by_no_force_at_all(direction: float) -> None:
+    """The nearer limit is the one that is met, though the force has no sign."""
+    back = replace(BACKWARD, kinetic=KineticTable((0.0, 0.125), (0.0, 0.0)),
+                   static=replace(BACKWARD.static, initial=0.0))
+    p = parameters(friction=replace(FRICTION, backward=back) if direction < 0.0 else replace(back, backward=FRICTION))
+    row = released(p, state(mode=STICK, rest=0.0))
+    assert (row.direction, row.static, abs(row.friction)) == (direction, 0.0, 0.0)
+
+
+@both_ways
+def test_without_a_force_the_next_derivative_says_where_to(direction: float) -> None:
+    """No normal force, so any force breaks the stick: its rate, then the rate of that, has the direction."""
+    for inputs in ({'v': direction * 0.5}, {'f_rate': direction},
+                   {'v_rate': direction * 0.5, 'f_rate': -direction * 16.0}):
+        p = parameters(normal_force=0.0)
+        s = state(mode=STICK, rest=math.inf, f=-32.0 * inputs.get('v', 0.0), **inputs)
+        assert released(p, s).direction == direction
+        assert (s.mode, s.direction, s.acceleration) == (ACCELERATING, direction, 0.0)
+
+
+@both_ways
+def test_a_moving_contact_without_a_force_goes_on_as_it_moves(direction: float) -> None:
+    p = parameters(normal_force=0.0, contact=replace(COMPLIANT, damping=0.0))
+    s = state(mode=STICK, rest=math.inf, velocity=direction * 0.125, f=direction * 4.0, acceleration=0.0)
+    assert released(p, s).direction == direction
+    s = state(mode=STICK, rest=math.inf, f=direction * 4.0, acceleration=direction * 2.0)
+    assert released(p, s).direction == direction
+    assert s.acceleration == direction * 2.0

@@ -11,15 +11,7 @@ from dataclasses import replace
 import pytest
 
 from stickslip_sim.axis import Friction
-from stickslip_sim.axis.codes import (
-    ACCELERATING,
-    ARREST,
-    BREAKAWAY,
-    DECELERATING,
-    STICK,
-    YIELD,
-    YIELDING,
-)
+from stickslip_sim.axis.codes import ACCELERATING, ARREST, BREAKAWAY, DECELERATING, STICK, YIELD, YIELDING
 from stickslip_sim.axis.forces import contact_force
 from stickslip_sim.axis.layout import Parameters
 from stickslip_sim.axis.mode_entry import choose_slip

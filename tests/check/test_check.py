@@ -4,15 +4,21 @@
 
 import math
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from stickslip_sim.check.limits import limits_of
+from stickslip_sim.check.outcomes import outcomes_of
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.runs import simulate
+from stickslip_sim.recording import RunFacts, read_run, write_bag
+from stickslip_sim.recording.reader import Bag
+from stickslip_sim.runs import samples, simulate
 from stickslip_sim.scene import scene_from_values
+from stickslip_sim.scene.ros_yaml import read_yaml
 from tests.support.check_files import (
     DECAY,
     FREE,
@@ -156,3 +162,42 @@ def test_windows_and_targets_of_the_file_hold_for_limits_without_their_own() -> 
         'limits: {x: {check: end_position_error, target: 0.01, max: 1.0, window: {end: 2.0}}}', found)['x'].value
     assert outcomes['later'].span == (1.0, 3.0)
     assert outcomes['later'].value == measured('end_position_error: {target: 0.0, max: 1.0}', found)
+
+
+# A check looks at a run block by block: the size of the blocks changes nothing, and no column is held whole.
+
+LIMITS = limits_of(read_yaml('''
+limits:
+  following_error: {max: 1.0}
+  error of a reference part: {check: following_error, max: 1.0, window: {begin: 0.7001, end: 0.7003}}
+  end_position_error: {target: 1.0e-3, max: 1.0}
+  overshoot: {target: 2.0e-3, max: 1.0}
+  settling_time: {target: 2.0e-3, band: 8.0e-4, max: 9.0}
+  settling at an event: {check: settling_time, target: 1.0e-3, band: 9.0e-4, max: 9.0, window: {begin: 0.6}}
+  sticks: {max: 9}
+  longest_stick: {max: 9.0, window: {begin: 0.9, end: 1.7}}
+  limit_cycle_amplitude: {max: 1.0}
+  peak_speed: {max: 1.0, window: {begin: 0.65}}
+'''))
+
+
+@pytest.fixture(scope='module')
+def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    scene = load_scene('paper_fig7', {'time.rate': 5000.0})
+    done = simulate(scene, 2.5, scene.time.step)
+    folder = tmp_path_factory.mktemp('blocks') / 'run'
+    write_bag(folder, RunFacts.of(scene), done.sample_rows(), done.events, {})
+    return folder
+
+
+@pytest.mark.parametrize('rows', [1, 777])
+def test_blocks_of_any_size_give_the_same_figures(bag: Path, monkeypatch: pytest.MonkeyPatch, rows: int) -> None:
+    expected = outcomes_of(LIMITS, read_run(bag))
+    assert expected[-2].value
+    monkeypatch.setattr(samples, 'GATHERED', rows)
+    assert outcomes_of(LIMITS, read_run(bag)) == expected
+
+
+def test_no_column_of_a_recorded_run_is_held_whole(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(Bag, 'columns_of')
+    assert outcomes_of(LIMITS, read_run(bag))

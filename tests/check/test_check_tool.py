@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from stickslip_sim.check.kinds import KINDS
+from stickslip_sim.check.measures import KINDS
 from stickslip_sim.cli.main import run
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import OfflineBag, RunFacts, open_bag

@@ -3,19 +3,26 @@
 """Runs of the tool that end otherwise: wrong use, full disks, readers that leave, signals; one line, nothing left."""
 
 import os
+import pty
 import signal
 import subprocess
 import sys
+import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import click
 import pytest
 
+from stickslip_sim.cli import progress
 from stickslip_sim.cli.main import run
+from stickslip_sim.cli.progress import progress_bar
 from stickslip_sim.inputs import load_scene
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused, restore_interrupt
+from tests.support.waiting import wait_for
 
 
 @pytest.mark.parametrize(('arguments', 'words'), [
@@ -121,7 +128,7 @@ except BaseException:
     raise ImportError('numpy._core.multiarray failed to import')
 """)
     program = """
-from stickslip_sim.cli.interrupts import listen
+from stickslip_sim.cli.process import listen
 listen()
 import hides
 try:
@@ -169,3 +176,111 @@ def test_what_a_command_reads_is_not_what_it_writes(tmp_path: Path, capsys: pyte
         assert 'must be another place than that of' in capsys.readouterr().err
         assert read.read_bytes() == before
     assert run(['simulate', 'paper_fig7', '--duration', '1', '--samples', str(curve)]) == 0   # a file of no other use
+
+
+# Where results go: all verbs make the same folders for their files, and refuse the same paths.
+
+SCENE = 'paper_fig7', '--duration', '0.5'
+CURVE = 'friction', ROOT / 'examples' / 'friction_curve.csv', '--speed-unit', 'mm/s'
+WITH = 'uncertainty', 'paper_fig7', '--with', ROOT / 'examples' / 'friction.yaml', '--out', 'spread'
+LIMITS = '--limits', ROOT / 'examples' / 'limits.yaml'
+COMMANDS = [
+    (('plot', *SCENE, '--out'), 'a.png'),
+    (('simulate', *SCENE, '--plot'), 'a.png'),
+    (('simulate', *SCENE, '--events'), 'a.csv'),
+    (('simulate', *SCENE, '--samples'), 'a.csv'),
+    (('simulate', *SCENE, '--receipt'), 'a.json'),
+    (('check', 'positioning', '--duration', '2', *LIMITS, '--junit'), 'a.xml'),
+    ((*CURVE, '--out'), 'a.yaml'),
+    ((*CURVE, '--plot'), 'a.png'),
+    ((*WITH, '--plot'), 'a.png'),
+    (('advise', *SCENE, '--tolerance', '1e-3', '--scene-out'), 'a.yaml'),
+    (('extremes', '--only', 'X01', '--out'), 'a.json'),
+]
+
+
+@pytest.mark.parametrize(('command', 'name'), COMMANDS, ids=lambda given: ' '.join(map(str, given))[-24:])
+def test_a_path_below_two_folders_that_are_missing_is_refused(
+        command: tuple[str, ...], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    monkeypatch.chdir(tmp_path)
+    line = refused(capsys, *command, Path('new', 'er', name))
+    assert f"must be in a folder, or in a new one within one; {tmp_path / 'new'} is none; make it, or look" in line
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(('command', 'name'), COMMANDS[:8], ids=lambda given: ' '.join(map(str, given))[-24:])
+def test_one_new_folder_is_made(
+        command: tuple[str, ...], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert answered(capsys, *command, Path('new', name))[0] in (0, 3)    # 3: beyond the limits
+    assert (tmp_path / 'new' / name).is_file()
+
+
+def test_a_new_folder_is_made_with_those_around_it(tmp_path: Path, capsys: Capture) -> None:
+    folder = tmp_path / 'new' / 'er' / 'run'
+    assert answered(capsys, 'simulate', *SCENE, '--bag', folder)[0] == 0
+    assert (folder / 'metadata.yaml').is_file()
+
+
+# The progress bar on a terminal, which a pseudo-terminal is.
+
+SOON = {'patience': 0.01, 'every': 0.01}
+
+
+class Terminal:
+    """Standard error of this process, and what was written to it."""
+
+    def __init__(self) -> None:
+        self._there, here = pty.openpty()
+        self.stream = os.fdopen(here, 'w')
+        self.text = ''
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self) -> None:
+        try:
+            while part := os.read(self._there, 4096):
+                self.text += part.decode()
+        except OSError:   # closed
+            pass
+
+
+@pytest.fixture
+def terminal(monkeypatch: pytest.MonkeyPatch) -> Iterator[Terminal]:
+    found = Terminal()
+    monkeypatch.setattr(progress, 'sys', SimpleNamespace(stderr=found.stream))   # pytest sets that of sys once more
+    yield found
+    found.stream.close()
+
+
+def test_work_that_says_nothing_shows_how_long_it_takes(terminal: Terminal) -> None:
+    with progress_bar('waiting', **SOON):
+        wait_for(lambda: 'waiting  0 s' in terminal.text, 'the bar')
+    wait_for(lambda: terminal.text.endswith('\x1b[?25h\r\n'), 'its end, with a cursor')
+
+
+def test_work_shows_its_share(terminal: Terminal) -> None:
+    with progress_bar('working', **SOON) as take:
+        assert take is not None
+        take(0.5)
+        wait_for(lambda: '#' * 15 + '-' * 15 in terminal.text, 'half of the bar')
+
+
+def test_there_is_one_bar_at_a_time(terminal: Terminal) -> None:
+    with progress_bar('outer', **SOON):
+        with progress_bar('inner', **SOON) as take:
+            assert take is None
+        wait_for(lambda: 'outer' in terminal.text, 'the bar')
+    assert 'inner' not in terminal.text
+    with progress_bar('later') as take:
+        assert take is not None
+
+
+def test_short_work_shows_nothing(terminal: Terminal) -> None:
+    with progress_bar('short', patience=60.0):
+        pass
+    assert not terminal.text
+
+
+def test_nobody_looks_where_there_is_no_terminal() -> None:
+    with progress_bar('unseen') as take:
+        assert take is None

@@ -4,6 +4,7 @@
 
 import csv
 import importlib.util
+import io
 import json
 import re
 from pathlib import Path
@@ -11,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from stickslip_sim.cli import csv_tables
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.core.types import EventKind
@@ -140,3 +142,44 @@ def test_the_examples_of_the_documentation(tmp_path: Path, monkeypatch: pytest.M
     assert len(blocks) == 9
     assert names['mass'] == 350.0
     assert names['jump'] == pytest.approx(1.3181e-3, rel=1e-4)
+
+
+# Numbers as lines of CSV: the digits of Python.
+
+RANDOM = np.random.default_rng(8)
+FLOATS = np.concatenate([
+    RANDOM.integers(0, 2 ** 64, 20_000, dtype=np.uint64).view(np.float64), RANDOM.random(5_000),
+    np.arange(5_000) / 1000,
+    [0.0, -0.0, np.inf, -np.inf, np.nan, -np.nan, 5e-324, 1e16, 1e17, 0.1 + 0.2, 1234567890123456.75, 2.0 ** -1074]])
+
+
+@pytest.mark.parametrize('is_compiled', [True, False], ids=['compiled', 'python'])
+def test_floats_have_the_17_digits_of_python(monkeypatch: pytest.MonkeyPatch, is_compiled: bool) -> None:
+    """Of all sizes, in all notations; a NaN has no sign."""
+    if not is_compiled:
+        monkeypatch.setattr(csv_tables, 'COMPILED', None)
+    elif csv_tables.COMPILED is None:
+        pytest.skip('the writer of numbers is not compiled here')
+    assert csv_tables.rows_text([FLOATS]).splitlines() == [f'{value:.17g}' for value in FLOATS.tolist()]
+
+
+@pytest.mark.parametrize('is_compiled', [True, False], ids=['compiled', 'python'])
+def test_all_kinds_of_numbers_are_written_as_python_does(monkeypatch: pytest.MonkeyPatch, is_compiled: bool) -> None:
+    """Integers, truth values, small floats and words, also from every second row."""
+    if not is_compiled:
+        monkeypatch.setattr(csv_tables, 'COMPILED', None)
+    columns = [np.array([-2 ** 63, 2 ** 63 - 1, 0, 7]), np.array([True, False, True, True]),
+               np.array([1, 2, 3, 2 ** 63 - 1], np.uint64), np.array([0.1, 2.5, -1.0, 0.0], np.float32),
+               np.arange(8.0)[::2], np.array([1.0, 0.0, 0.0, 1.0])]
+    assert csv_tables.are_numbers(columns)
+    expected = io.StringIO()
+    written = [column.tolist() for column in columns[:3]] + [[f'{value:.17g}' for value in column.tolist()]
+                                                          for column in columns[3:5]] + [['b', 'a', 'a', 'b']]
+    csv.writer(expected, lineterminator='\n').writerows(zip(*written, strict=True))
+    assert csv_tables.rows_text(columns, [None] * 5 + [['a', 'b']]) == expected.getvalue()
+
+
+def test_texts_and_integers_beyond_64_bits_are_for_others() -> None:
+    """They go through the csv module."""
+    assert not csv_tables.are_numbers([np.array(['a'], object)])
+    assert not csv_tables.are_numbers([np.array([2 ** 63], np.uint64)])

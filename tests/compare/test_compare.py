@@ -4,6 +4,7 @@
 
 import base64
 import json
+import math
 import re
 import shutil
 from html.parser import HTMLParser
@@ -14,15 +15,12 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from stickslip_sim.cli.compare import named_apart
 from stickslip_sim.cli.main import run
-from stickslip_sim.compare.characteristics import characteristics_of
-from stickslip_sim.compare.conventional import characteristics_beside
-from stickslip_sim.compare.drawn import in_order
-from stickslip_sim.compare.drawn_motion import drawn_motion
+from stickslip_sim.compare.characteristics import characteristics_beside, characteristics_of
 from stickslip_sim.compare.fresh import simulate_densely
-from stickslip_sim.compare.look import look_at
+from stickslip_sim.compare.look import drawn_motion, look_at
 from stickslip_sim.compare.ring_down import RING_DOWN, closed_form, identified
+from stickslip_sim.compare.run_part import in_order
 from stickslip_sim.compare.statement import StatementOutcome
 from stickslip_sim.compare.statements import findings_on, observed
 from stickslip_sim.core.types import EventKind
@@ -31,6 +29,7 @@ from stickslip_sim.plots.characteristics import plot_characteristics
 from stickslip_sim.plots.paper_panels import plot_motion
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate_events
+from stickslip_sim.runs.report import named_apart
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture, answered
 
@@ -142,11 +141,12 @@ def test_ring_down_is_that_of_the_closed_form(report: Path) -> None:
 
 @pytest.mark.parametrize('damping', [0.0, 15000.0, 60000.0, 2e5])
 def test_ring_down_is_identified_from_the_motion(damping: float) -> None:
-    """Also where nothing swings: a damping ratio of 1.93."""
+    """Also where nothing swings: a damping ratio of 2.3."""
     moving = simulate_densely(load_scene('paper_fig8', {'contact.damping': damping}), 3.0)
     form, found = closed_form(moving.scene.axis), identified(observed(moving).found[RING_DOWN])
     assert form is not None
     assert found is not None
+    assert form.damping_ratio == pytest.approx((4000.0 + damping) / (2.0 * math.sqrt(5.6e6 * 350.0)), rel=1e-12)
     assert tuple(found) == pytest.approx(tuple(form), rel=1e-6)
 
 

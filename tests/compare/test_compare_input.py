@@ -160,6 +160,6 @@ def test_a_failure_leaves_nothing(tmp_path: Path, capsys: Capture, monkeypatch: 
     def full(*_: object) -> str:
         raise OSError(28, 'No space left on device')
 
-    monkeypatch.setattr('stickslip_sim.compare.report_folder.page', full)
+    monkeypatch.setattr('stickslip_sim.compare.report.page', full)
     assert 'No space left on device' in refused(capsys, tmp_path, 'paper_fig7', '--duration', '1')
     assert list(tmp_path.iterdir()) == []

@@ -8,9 +8,9 @@ from importlib.resources import files
 
 import pytest
 
-from stickslip_sim.config.ros_yaml import plain_value
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import scene_from_values, scene_names
+from stickslip_sim.scene.ros_yaml import plain_value
 from tests.support.scene_files import HEAD, write
 
 rclpy = pytest.importorskip('rclpy')

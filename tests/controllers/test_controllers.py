@@ -27,7 +27,7 @@ from stickslip_sim.controllers import (
 )
 from stickslip_sim.core.types import Mode
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.rig import Measured
+from stickslip_sim.simulation import Measured
 
 NO_FRICTION = replace(AXIS, normal_force=0.0)
 STILL = Measured(0.0, 0.0, 0.0, 0.0)

@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stickslip_sim.design.candidate_feeds import default_speeds, feeds
-from stickslip_sim.design.design_folder import scene_file, table_heads, table_rows
-from stickslip_sim.design.experiments import Wishes, designed
-from stickslip_sim.design.information import Sensors, covariance_after, run_slopes
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.report.text import text_lines
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import changed
+from stickslip_sim.sensitivity.candidate_feeds import default_speeds, feeds
+from stickslip_sim.sensitivity.experiments import Wishes, designed
+from stickslip_sim.sensitivity.information import Sensors, covariance_after, run_slopes
+from stickslip_sim.sensitivity.report import feed_table, scene_file
 from stickslip_sim.sensitivity.sensitivities import sensitivities
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused
@@ -86,8 +87,8 @@ def test_the_page_has_what_the_tool_prints() -> None:
     names = (*NAMES, 'friction.static.initial')
     found = designed(SCENE, wishes(parameters=names, duration=10.0, sensors=Sensors(1000.0, 1e-6, 0.0, None)))
     page = (ROOT / 'docs' / 'sensitivities.md').read_text(encoding='utf-8')
-    for row in [table_heads(found), *table_rows(found.experiments[:3])]:
-        assert any(line.split() == ' '.join(row).split() for line in page.splitlines()), row
+    for row in [*text_lines([feed_table(found)])][:4]:
+        assert any(line.split() == row.split() for line in page.splitlines()), row
 
 
 def test_every_feed_is_a_scene_that_runs() -> None:

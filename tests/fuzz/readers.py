@@ -9,20 +9,19 @@ from typing import Any
 
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.observed_run import gaps_in, observed_motion, timing_of
-from stickslip_sim.cli.export import csv_lines
-from stickslip_sim.config.ros_yaml import read_yaml
+from stickslip_sim.check.origin import doubts_about
+from stickslip_sim.check.verification import verify
+from stickslip_sim.cli.csv_tables import csv_lines
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import Bag, RecordedRun, open_bag, read_run
 from stickslip_sim.recording.playback import Recording
 from stickslip_sim.scene import parse_override, parse_scene
+from stickslip_sim.scene.ros_yaml import read_yaml
 from stickslip_sim.study import EvenGrid, Study, variation
-from stickslip_sim.study.picks import point_of
-from stickslip_sim.study.pictures import check_drawable
-from stickslip_sim.study.uncertain_file import uncertain_of
+from stickslip_sim.study.diagrams import check_drawable, point_of
+from stickslip_sim.study.uncertainty import uncertain_of
 from stickslip_sim.study.variation import range_of
-from stickslip_sim.verify.origin import doubts_about
-from stickslip_sim.verify.verification import verify
 from tests.support.refusals import accepts_or_refuses
 
 from .called_tool import call_tool

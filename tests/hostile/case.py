@@ -8,9 +8,8 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.core.energy import EnergyBalance
 from stickslip_sim.core.input_profile import InputProfile
-from stickslip_sim.core.types import Event, Instant, Sample
+from stickslip_sim.core.types import EnergyBalance, Event, Instant, Sample
 from stickslip_sim.scene import Scene, scene_from_values
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.time_and_memory import within

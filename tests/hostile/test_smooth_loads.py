@@ -9,9 +9,8 @@ from collections.abc import Sequence
 import pytest
 
 from stickslip_sim.axis import InitialState
-from stickslip_sim.core.energy import EnergyBalance
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
-from stickslip_sim.core.types import Event, EventKind, Mode, Sample
+from stickslip_sim.core.types import EnergyBalance, Event, EventKind, Mode, Sample
 from stickslip_sim.reference import ReferenceRun, simulate
 from tests.hostile.case import Case, Find, Parts, Run, Undecided, instant
 from tests.hostile.generators import GENERATORS

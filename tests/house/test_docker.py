@@ -15,6 +15,7 @@ import pytest
 import yaml
 
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.ros.controllers.controller_node import COMMON, COMPENSATION
 from stickslip_sim.scene.schema import BY_NAME
 from tests.support.dockerfiles import instructions, stages
 from tests.support.node_processes import executable
@@ -23,13 +24,8 @@ from tests.support.ros_nodes import client
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE
 
-from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip  # after ros_nodes, which skips
-    COMMON, COMPENSATION,
-)
-
-FILES = ['docker/Dockerfile', 'docker/Dockerfile.ros']
 KNOWN = {'sim_node': set(BY_NAME), 'compensating_controller': {entry.name for entry in (*COMMON, *COMPENSATION)}}
-ENTRYPOINT = ROOT / 'docker' / 'entrypoint'
+ENTRYPOINT = '/opt/stickslip/docker/entrypoint'
 
 
 def in_context(path: str) -> bool:
@@ -43,24 +39,22 @@ def in_context(path: str) -> bool:
     return let_in
 
 
-@pytest.mark.parametrize('file', FILES)
+@pytest.mark.parametrize('file', ['docker/Dockerfile', 'docker/Dockerfile.ros'])
 class TestBoth:
     def test_what_is_copied_exists_and_is_in_the_context(self, file: str) -> None:
         sources = [word for instruction in instructions(file) if instruction.name == 'COPY'
                    and '--from' not in instruction.text for word in instruction.words[:-1]]
         assert 'stickslip_sim' in sources
-        assert all((ROOT / source).exists() for source in sources)
-        assert all(in_context(source) for source in sources)
+        assert all((ROOT / source).exists() and in_context(source) for source in sources)
 
     def test_who_it_runs_as_how_it_is_asked_and_how_it_ends(self, file: str) -> None:
         final = {instruction.name: instruction for instruction in stages(file)[-1]}
         assert final['USER'].text not in ('root', '0')
         assert final['STOPSIGNAL'].text == 'SIGINT'
-        assert final['ENTRYPOINT'].words == ['/opt/stickslip/docker/entrypoint']
-        assert final['HEALTHCHECK'].words == ['/opt/stickslip/docker/entrypoint', 'health']
-        assert final['CMD'].words == ['sim_node']
-        for name in (final['CMD'].words[0], final['HEALTHCHECK'].words[1]):
-            assert executable(name)
+        assert [final[name].words for name in ('ENTRYPOINT', 'HEALTHCHECK', 'CMD')] == [
+            [ENTRYPOINT], [ENTRYPOINT, 'health'], ['sim_node']]
+        assert executable('health')
+        assert executable('sim_node')
 
     def test_heard_on_this_machine_only(self, file: str) -> None:
         """As ROS has it, or as the profiles of Fast DDS do."""
@@ -68,36 +62,19 @@ class TestBoth:
         discovery_range = 'SYSTEM_DEFAULT' if 'DEFAULT_PROFILES_FILE' in environment else 'LOCALHOST'
         assert f'ROS_AUTOMATIC_DISCOVERY_RANGE={discovery_range}' in environment
 
-    def test_lists_of_apt_stay_in_no_layer(self, file: str) -> None:
-        for instruction in instructions(file):
-            if 'apt-get' in instruction.text:
-                assert 'rm -rf' in instruction.text
-                assert '/var/lib/apt/lists/*' in instruction.text
-                assert '--no-install-recommends' in instruction.text
 
-
-class TestImage:
-    def test_what_is_installed_is_what_the_lock_says(self) -> None:
-        text = (ROOT / 'docker/Dockerfile').read_text(encoding='utf-8')
-        assert 'pip install' not in text
-        assert 'RUN ros2_ws/bootstrap\n' in text
-        distro, = re.findall(r'ARG DISTRO=(\w+)', text)
-        assert (ROOT / f'ros2_ws/requirements-{distro}.txt').is_file()
-
-    def test_the_base_has_a_release(self) -> None:
-        base, = re.findall(r'ARG BASE=(\S+)', (ROOT / 'docker/Dockerfile').read_text(encoding='utf-8'))
-        assert re.fullmatch(r'debian:[a-z]+-slim', base)
-
-    def test_compilers_stay_behind(self) -> None:
-        build, final = stages('docker/Dockerfile')
-        assert any('g++' in instruction.text for instruction in build)
-        assert not any('g++' in instruction.text for instruction in final)
-
-    def test_profiles_of_fast_dds_are_there_under_both_names(self) -> None:
-        words = [word for entry in stages('docker/Dockerfile')[-1] if entry.name == 'ENV' for word in entry.words]
-        values = dict(word.split('=') for word in words)
-        assert values['FASTRTPS_DEFAULT_PROFILES_FILE'] == values['FASTDDS_DEFAULT_PROFILES_FILE']
-        assert (ROOT / values['FASTDDS_DEFAULT_PROFILES_FILE'].removeprefix('/opt/stickslip/')).is_file()
+def test_the_image_has_what_the_lock_says_and_no_compiler() -> None:
+    text = (ROOT / 'docker/Dockerfile').read_text(encoding='utf-8')
+    build, final = (' '.join(instruction.text for instruction in stage) for stage in stages('docker/Dockerfile'))
+    assert 'pip install' not in text
+    assert 'RUN ros2_ws/bootstrap\n' in text
+    distro, = re.findall(r'ARG DISTRO=(\S+)', text)
+    assert (ROOT / f'ros2_ws/requirements-{distro}.txt').is_file()
+    assert 'g++' in build
+    assert 'g++' not in final
+    profiles, again = re.findall(r'FAST(?:RTPS|DDS)_DEFAULT_PROFILES_FILE=/opt/stickslip/(\S+)', final)
+    assert profiles == again    # under both names
+    assert (ROOT / profiles).is_file()
 
 
 @pytest.mark.parametrize(('path', 'is_in'), [
@@ -110,65 +87,52 @@ def test_context(path: str, is_in: bool) -> None:
     assert in_context(path) == is_in
 
 
-def compose(file: str) -> Any:
-    return yaml.safe_load((ROOT / 'docker' / file).read_text(encoding='utf-8'))
-
-
-def defaults(text: str) -> str:
-    """Return a text with the defaults of its variables in place."""
-    return re.sub(r'\$\{\w+:-([^}]*)\}', r'\1', text)
-
-
 class TestCompose:
-    def test_all_run_the_image_that_is_built_here(self) -> None:
-        for service in compose('compose.yaml')['services'].values():
-            context = ROOT / 'docker' / service['build']['context']
-            assert context.resolve() == ROOT
-            assert service['build']['dockerfile'] == 'docker/Dockerfile'
-            assert service['image'] == 'stickslip'
+    @staticmethod
+    def services(file: str = 'compose.yaml') -> dict[str, Any]:
+        """Return the services of a file, with the defaults of its variables in place."""
+        text = re.sub(r'\$\{\w+:-([^}]*)\}', r'\1', (ROOT / 'docker' / file).read_text(encoding='utf-8'))
+        found: dict[str, Any] = yaml.safe_load(text)['services']
+        return found
 
-    def test_programs_and_parameters(self) -> None:
-        for service in compose('compose.yaml')['services'].values():
-            program, *words = map(defaults, service['command'])
-            assert executable(program)
-            parameters = dict(word.split(':=') for flag, word in pairwise(words) if flag == '-p')
-            assert words == ['--ros-args', *(word for name, value in parameters.items()
-                                             for word in ('-p', f'{name}:={value}'))]
-            assert set(parameters) <= KNOWN[program]
-            for name, value in parameters.items():
-                if name == 'scene':
-                    load_scene(value)
-                elif name in BY_NAME:
-                    BY_NAME[name].checked(yaml.safe_load(value))
+    @pytest.mark.parametrize('name', ['axis', 'controller'])
+    def test_a_service_runs_the_image_that_is_built_here_without_rights(self, name: str) -> None:
+        service = self.services()[name]
+        assert (ROOT / 'docker' / service['build']['context']).resolve() == ROOT
+        assert (service['build']['dockerfile'], service['image']) == ('docker/Dockerfile', 'stickslip')
+        assert (service['read_only'], service['cap_drop']) == (True, ['ALL'])
+
+    @pytest.mark.parametrize('name', ['axis', 'controller'])
+    def test_a_program_has_parameters_that_there_are(self, name: str) -> None:
+        program, flag, *words = self.services()[name]['command']
+        assert executable(program)
+        assert (flag, set(words[::2])) == ('--ros-args', {'-p'})
+        parameters = dict(word.split(':=') for word in words[1::2])
+        assert set(parameters) <= KNOWN[program]
+        for parameter, value in parameters.items():
+            if parameter == 'scene':
+                load_scene(value)
+            elif parameter in BY_NAME:
+                BY_NAME[parameter].checked(yaml.safe_load(value))
 
     def test_the_axis_records_into_the_volume(self) -> None:
-        file = compose('compose.yaml')
-        volume, _, folder = file['services']['axis']['volumes'][0].partition(':')
-        assert volume in file['volumes']
+        axis = self.services()['axis']
         workdir = next(entry.text for entry in stages('docker/Dockerfile')[-1] if entry.name == 'WORKDIR')
-        assert folder == f'{workdir}/runs'
-        assert 'record.enabled:=true' in file['services']['axis']['command']
+        assert axis['volumes'] == [f'runs:{workdir}/runs']
+        assert 'record.enabled:=true' in axis['command']
 
     def test_closed_to_the_outside_and_open_to_each_other(self) -> None:
-        services = compose('compose.yaml')['services']
-        assert services['axis']['network_mode'] == 'none'
-        assert services['controller']['network_mode'] == 'service:axis'
-        for service in services.values():
-            assert service['read_only'] is True
-            assert service['cap_drop'] == ['ALL']
-
-    def test_on_the_network_of_the_machine_all_are(self) -> None:
-        services, on_host = (compose(file)['services'] for file in ('compose.yaml', 'compose.host.yaml'))
-        assert set(on_host) == set(services)
-        assert all(service == {'network_mode': 'host'} for service in on_host.values())
+        assert {name: service['network_mode'] for name, service in self.services().items()} == {
+            'axis': 'none', 'controller': 'service:axis'}
+        assert self.services('compose.host.yaml') == {
+            name: {'network_mode': 'host'} for name in self.services()}
 
     def test_real_time_adds_rights_and_parameters_to_the_axis(self) -> None:
         """A second file replaces the command as a whole."""
-        axis = compose('compose.yaml')['services']['axis']
-        (name, wanted), = compose('compose.realtime.yaml')['services'].items()
-        assert name == 'axis'
-        assert wanted['command'][:len(axis['command'])] == axis['command']
-        added = [word.split(':=')[0] for word in wanted['command'][len(axis['command']):] if word != '-p']
+        command = self.services()['axis']['command']
+        (name, wanted), = self.services('compose.realtime.yaml').items()
+        assert (name, wanted['command'][:len(command)]) == ('axis', command)
+        added = [word.split(':=')[0] for flag, word in pairwise(wanted['command'][len(command):]) if flag == '-p']
         assert added == ['thread_priority', 'lock_memory', 'cpu_affinity', 'require_real_time']
         assert wanted['ulimits'] == {'rtprio': 99, 'memlock': -1}
 
@@ -177,8 +141,8 @@ class TestCompose:
 def test_the_entrypoint_runs_the_programs_and_hands_signals_on() -> None:
     """It runs in the built tree as in the image; what it starts takes its place."""
     environment = {name: value for name, value in os.environ.items() if name != 'AMENT_PREFIX_PATH'}
-    process = subprocess.Popen([ENTRYPOINT, 'sim_node', '--ros-args', '-p', 'scene:=positioning'], env=environment,
-                               stderr=subprocess.PIPE, text=True, preexec_fn=restore_interrupt)
+    process = subprocess.Popen([ROOT / 'docker/entrypoint', 'sim_node', '--ros-args', '-p', 'scene:=positioning'],
+                               env=environment, stderr=subprocess.PIPE, text=True, preexec_fn=restore_interrupt)
     try:
         with client() as axis:
             axis.connect()

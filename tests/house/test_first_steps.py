@@ -1,29 +1,30 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What README and docs/hil.md have a newcomer do first: `make run`, and the examples beside an axis."""
+"""What README and docs/hil.md have a newcomer do: `make run`, the examples, the first minutes with a human's delays."""
 
 import re
+import shlex
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
 
 from stickslip_sim.recording import open_bag
-from tests.support.node_processes import recording_into, running
+from tests.support.node_processes import executable, recording_into, running
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client
-from tests.support.waiting import wait_for
+from tests.support.tool import Capture, answered, restore_interrupt
+from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
-DRIVE = ROOT / 'examples' / 'drive.py'
-SETPOINT = ROOT / 'examples' / 'setpoint.py'
-CONTROLLER = ROOT / 'examples' / 'controller.py'
-LOCKSTEP = ROOT / 'examples' / 'lockstep.py'
+DRIVE, SETPOINT, CONTROLLER, LOCKSTEP = (ROOT / 'examples' / f'{name}.py'
+                                         for name in ('drive', 'setpoint', 'controller', 'lockstep'))
+ENCODERS = ('-p', 'drive.velocity:=0.0', '-p', 'joint_interface.enabled:=true', '-p', 'encoder.resolution:=1.0e-6')
 
 
 def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -31,26 +32,40 @@ def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
                           check=False)
 
 
-@pytest.fixture(scope='class')
-def axis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with running(folder=tmp_path_factory.mktemp('axis'), afresh=True), client() as it:
-        it.connect()
-        yield it
+@contextmanager
+def started(*command: str | Path) -> Iterator['subprocess.Popen[str]']:
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               preexec_fn=restore_interrupt)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
 
 
-def test_the_demonstration_records_and_has_nothing_to_complain_of(tmp_path: Path) -> None:
-    done = python('-m', 'stickslip_sim.ros.demo', '--duration', '1', '--out', tmp_path)
-    assert (done.returncode, done.stderr) == (0, '')
-    assert re.search(r'^verdict  real-time valid: (yes|no), worst ', done.stdout, re.MULTILINE)
-    [folder] = tmp_path.iterdir()
-    assert (folder / 'run.png').stat().st_size > 10_000
-    assert open_bag(folder).receipt is not None    # it was closed
+def interrupt(process: 'subprocess.Popen[str]') -> str:
+    """End a program as Ctrl-C does; return what it said, from what was not yet read on."""
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 0, errors
+    return errors
 
 
-def test_late_steps_are_no_wrong_motion(tmp_path: Path) -> None:
-    """What the demonstration says of a run whose steps were late, by limits that no machine keeps."""
-    from stickslip_sim.ros.demo_report import report
-    for most, verdict in (('1e-9', 'no'), ('60.0', 'yes')):
+class TestDemonstration:
+    """`make run`."""
+
+    def test_it_records_and_has_nothing_to_complain_of(self, tmp_path: Path) -> None:
+        done = python('-m', 'stickslip_sim.ros.demo', '--duration', '1', '--out', tmp_path)
+        assert (done.returncode, done.stderr) == (0, '')
+        assert re.search(r'^verdict  real-time valid: (yes|no), worst ', done.stdout, re.MULTILINE)
+        [folder] = tmp_path.iterdir()
+        assert (folder / 'run.png').stat().st_size > 10_000
+        assert open_bag(folder).receipt is not None    # it was closed
+
+    @pytest.mark.parametrize(('most', 'verdict'), [('1e-9', 'no'), ('60.0', 'yes')])
+    def test_late_steps_are_no_wrong_motion(self, most: str, verdict: str, tmp_path: Path) -> None:
+        """What it says of a run whose steps were late, by limits that no machine keeps."""
+        from stickslip_sim.ros.demo import report
         limits = '-p', f'timing.max_lateness:={most}', '-p', 'timing.max_overruns:=1.0'
         with running(*recording_into(tmp_path / verdict), *limits) as process, client() as axis:
             axis.connect()
@@ -59,6 +74,13 @@ def test_late_steps_are_no_wrong_motion(tmp_path: Path) -> None:
         assert f'verdict  real-time valid: {verdict}, ' in said
         assert [words in said for words in ('the motion is right, the timing was late, ', 'lock-step is the way ')
                 ] == 2 * [verdict == 'no']
+
+
+@pytest.fixture(scope='class')
+def axis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
+    with running(folder=tmp_path_factory.mktemp('axis'), afresh=True), client() as it:
+        it.connect()
+        yield it
 
 
 class TestDrive:
@@ -84,53 +106,115 @@ def test_nothing_to_send_is_wrong_use() -> None:
     assert 'give a velocity in m/s' in done.stderr
 
 
-def test_the_controller_is_the_one_of_the_page() -> None:
-    _, _, code = CONTROLLER.read_text(encoding='utf-8').partition('DriveVelocity, SliderState\n\n')
-    shown = [line.strip() for line in (ROOT / 'docs/hil.md').read_text(encoding='utf-8').splitlines()]
-    assert code
-    assert [line.strip() for line in code.splitlines() if line.strip() and line.strip() not in shown] == []
-
-
 def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
     """In a namespace where there is none, and where there is one; all at once, as each takes its time."""
     nowhere = '--ros-args', '-r', '__ns:=/nowhere'
     with ExitStack() as ended:
         ended.enter_context(running('-r', '__ns:=/cell', afresh=True))
         ended.enter_context(client('/cell')).connect()
-        waiting = [ended.enter_context(subprocess.Popen([sys.executable, *map(str, example), *nowhere],
-                                                        stderr=subprocess.PIPE, text=True))
-                   for example in ([CONTROLLER], [SETPOINT], [SETPOINT, '--lockstep'], [LOCKSTEP], [DRIVE, '0.001'])]
+        waiting = [ended.enter_context(started(sys.executable, *example, *nowhere)) for example in (
+            [CONTROLLER], [SETPOINT], [SETPOINT, '--lockstep'], [LOCKSTEP], [DRIVE, '0.001'])]
         for each in waiting:
             assert each.stderr
             line = each.stderr.readline()
             assert 'waiting for an axis: start sim_node ' in line
             assert line.endswith('with this ROS_DOMAIN_ID; axes run in: /cell (--ros-args -r __ns:=NAMESPACE)\n')
             each.send_signal(signal.SIGINT)
-            assert each.stderr.read() == ''
+            assert each.communicate(timeout=DEADLINE)[1] == ''
 
 
-ENCODERS = ('-p', 'drive.velocity:=0.0', '-p', 'joint_interface.enabled:=true', '-p', 'encoder.resolution:=1.0e-6')
+class TestSetpoint:
+    def test_it_is_followed_on_the_encoders(self, tmp_path: Path) -> None:
+        moved: list[float] = []
+        with running(*ENCODERS, folder=tmp_path, afresh=True), client() as axis:
+            axis.connect()
+            for _ in range(3):    # one that waits a second for a core goes too far
+                begin = axis.latest('slider_state').position
+                done = python(SETPOINT)
+                assert done.returncode == 0, done.stderr
+                rest = axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
+                moved.append(rest.position - begin)
+                if abs(moved[-1] - 0.010) < 1e-3:
+                    break
+        assert abs(moved[-1] - 0.010) < 1e-3, moved
+
+    def test_and_in_lock_step_to_the_last_bit(self, tmp_path: Path) -> None:
+        with running(*ENCODERS, '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
+            runs = [python(SETPOINT, '--lockstep', '--ros-args', '-r', '__ns:=/stepped') for _ in range(2)]
+        assert [run.returncode for run in runs] == [0, 0], runs
+        first, second = (run.stderr.rpartition(']: ')[2] for run in runs)
+        assert first == second
+        assert first.startswith('done: the largest error was 1.')
 
 
-def test_a_setpoint_is_followed_on_the_encoders(tmp_path: Path) -> None:
-    moved: list[float] = []
-    with running(*ENCODERS, folder=tmp_path, afresh=True), client() as axis:
-        axis.connect()
-        for _ in range(3):    # one that waits a second for a core goes too far
-            begin = axis.latest('slider_state').position
-            done = python(SETPOINT)
-            assert done.returncode == 0, done.stderr
-            rest = axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
-            moved.append(rest.position - begin)
-            if abs(moved[-1] - 0.010) < 1e-3:
-                break
-    assert abs(moved[-1] - 0.010) < 1e-3, moved
+class TestFiveMinutes:
+    """The first minutes of docs/hil.md: its commands, one after the other."""
 
+    HUMAN = 3.0      # s from the start of the axis to that of the controller: beyond the window of any limits from 0 on
+    CHECKED = 2.0     # s, in examples/controller_limits.yaml
+    AT_MOST = r'(\[WARN\].*: waiting for an axis: .*\n)?'   # said by a controller that a busy machine lets wait for 2 s
+    AXIS, CONTROLLER, CHECK, STEPPED_AXIS, STEPPER = (
+        shlex.split(line) for block in re.findall(
+            r'```sh\n(.*?)```', (ROOT / 'docs/hil.md').read_text(encoding='utf-8').partition(
+                '## Wired in five minutes')[2].partition('\n## ')[0], re.DOTALL)
+        for line in block.splitlines() if not line.startswith('source '))
 
-def test_and_in_lock_step_to_the_last_bit(tmp_path: Path) -> None:
-    with running(*ENCODERS, '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
-        runs = [python(SETPOINT, '--lockstep', '--ros-args', '-r', '__ns:=/stepped') for _ in range(2)]
-    assert [run.returncode for run in runs] == [0, 0], runs
-    first, second = (run.stderr.rpartition(']: ')[2] for run in runs)
-    assert first == second
-    assert first.startswith('done: the largest error was 1.')
+    @pytest.fixture(autouse=True)
+    def folder(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+        """Return where the commands run: an empty folder with the examples."""
+        (tmp_path / 'examples').symlink_to(ROOT / 'examples')
+        monkeypatch.chdir(tmp_path)
+        return tmp_path
+
+    def check(self, capsys: Capture, *limits: str) -> tuple[int, list[str], str]:
+        """Check the first run as the page does, or by other limits; return exit code, lines and errors."""
+        _, verb, runs, *options = self.CHECK
+        code, out, errors = answered(capsys, verb, min(Path().glob(runs)), *options[:-len(limits) or None], *limits)
+        return code, out.splitlines(), errors
+
+    def test_the_run_is_not_taken_for_that_of_make_run(self) -> None:
+        """A reader has that one in the same folder already."""
+        from stickslip_sim.ros.demo import DEMO_SCENE
+        commands = self.AXIS, self.CONTROLLER, self.CHECK, self.STEPPED_AXIS, self.STEPPER
+        assert [Path(program).name for program, *_ in commands] == [
+            'sim_node', 'python3', 'stickslip', 'sim_node', 'python3']
+        assert self.CHECK[2].startswith('runs/')
+        assert not self.CHECK[2].startswith(f'runs/{DEMO_SCENE}_')
+
+    def test_a_controller_that_is_started_by_hand_is_checked(self, capsys: Capture) -> None:
+        with started(executable('sim_node'), *self.AXIS[1:]) as axis, client() as listener:
+            listener.next('slider_state', lambda state: state.time > self.HUMAN)
+            assert listener.latest('slider_state').drive_velocity == 0.0    # it rests until the first command
+            with started(sys.executable, *self.CONTROLLER[1:]) as controller:
+                first = listener.next('slider_state', lambda state: state.drive_velocity != 0.0).time
+                listener.next('slider_state', lambda state: state.time > first + self.CHECKED + 0.1)
+                assert re.fullmatch(self.AT_MOST, interrupt(controller))
+            said = interrupt(axis)
+        code, lines, errors = self.check(capsys)
+        assert code == 3, errors
+        head, verdict, *_, last = lines
+        assert float(head.rpartition('first command at t = ')[2].removesuffix(' s')) > self.HUMAN
+        assert verdict.startswith('real-time valid: ')
+        assert verdict in said
+        assert re.match(r'FAILED: \d of 5: .*overshoot.*sticks', last)
+        assert not any('no controller was checked' in line for line in lines)
+        code, _, errors = self.check(capsys, 'examples/limits.yaml')    # it ends before
+        assert (code, 'no controller was checked' in errors) == (3, True)
+
+    def test_lock_step_gives_the_same_recorded_run_each_time(self, folder: Path, capsys: Capture) -> None:
+        with started(executable('sim_node'), *self.STEPPED_AXIS[1:]) as axis:
+            assert python(*self.STEPPER[1:]).returncode == 0
+            for words in ('record off', 'reset', 'record'):
+                code, _, errors = answered(capsys, 'call', *words.split())
+                assert code == 0, errors
+            assert python(*self.STEPPER[1:], '--duration', '0.2').returncode == 0
+            interrupt(axis)
+        first, second = sorted((folder / 'runs').iterdir())
+        whole, part = (open_bag(run).columns('/slider_state')['position'].tolist() for run in (first, second))
+        assert part == whole[:201]
+        assert answered(capsys, 'verify', first)[0] == 0
+        code, (head, verdict, *_), errors = self.check(capsys)
+        assert code == 3, errors
+        assert '0 to 2 s, 2001 states' in head
+        assert head.endswith('first command at t = 0 s')
+        assert verdict.startswith('not in real time (time.mode lockstep); commands: 400 received, 0 refused')

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A bag of a real node among other people's tools: readers, the ROS graph, the files of rosbag2, layouts of viewers."""
 
-import ast
 import json
 import os
 import xml.etree.ElementTree as ElementTree
@@ -16,10 +15,10 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
+from stickslip_sim.bags.schemas import store_of
+from stickslip_sim.bags.topics import RECORDED, Topic
 from stickslip_sim.core.errors import RecordingWarning
-from stickslip_sim.recording import Bag, RecordedMessage, open_bag, schema
-from stickslip_sim.recording.schemas import store_of
-from stickslip_sim.recording.topics import RECORDED, Topic
+from stickslip_sim.recording import open_bag, schema
 
 pytest.importorskip('rclpy')
 from rclpy.serialization import deserialize_message
@@ -37,20 +36,12 @@ TOPICS = [topic.resolved() for topic in RECORDED]
 ENDLESS = {'sec': 9223372036, 'nsec': 854775807}
 
 
-class Offer(NamedTuple):
-    """What the graph says of a topic while the node runs."""
-
-    type_hash: str
-    reliability: str
-    durability: str
-
-
 class Recorded(NamedTuple):
     """A bag, its metadata.yaml while it was written, and what the graph said then."""
 
     folder: Path
     metadata: Mapping[str, Any]
-    offers: Mapping[str, Offer]
+    offers: Mapping[str, tuple[str, str, str]]    # hash of the type, reliability and durability
 
 
 @pytest.fixture(scope='module')
@@ -62,21 +53,18 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
     return Recorded(folder, metadata, offers)
 
 
-def offer(axis: Client, topic: Topic) -> Offer:
+def offer(axis: Client, topic: Topic) -> tuple[str, str, str]:
     """Return what the node offers, or asks for where others publish."""
-    def ends() -> list[Any]:
-        graph = axis.node
-        return [info for info in (*graph.get_publishers_info_by_topic(topic.name),
-                                  *graph.get_subscriptions_info_by_topic(topic.name)) if info.node_name == 'feed_axis']
-
-    info, = wait_for(ends, topic.name)
+    graph = axis.node
+    info, = wait_for(lambda: [info for info in (*graph.get_publishers_info_by_topic(topic.name),
+                                                *graph.get_subscriptions_info_by_topic(topic.name))
+                              if info.node_name == 'feed_axis'], topic.name)
     quality = info.qos_profile
-    return Offer(str(info.topic_type_hash), quality.reliability.name.lower(), quality.durability.name.lower())
+    return str(info.topic_type_hash), quality.reliability.name.lower(), quality.durability.name.lower()
 
 
-def information(folder: Path) -> dict[str, Any]:
-    body: dict[str, Any] = yaml.safe_load((folder / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
-    return body
+def information(folder: Path) -> Any:
+    return yaml.safe_load((folder / 'metadata.yaml').read_text())['rosbag2_bagfile_information']
 
 
 def file_of(folder: Path) -> Path:
@@ -95,72 +83,59 @@ def plain(message: Any, like: Any) -> Any:
 class TestReaders:
     """Every message of every topic, read by others as rclpy reads it."""
 
-    def test_all_topics_have_messages(self, recorded: Recorded) -> None:
-        assert all(count > 0 for count in open_bag(recorded.folder).counts.values())
+    @staticmethod
+    def assert_as_rclpy_reads(found: list[tuple[str, int, Any]], folder: Path) -> None:
+        run = open_bag(folder)
+        assert len(found) == sum(run.counts.values())
+        for topic in TOPICS:
+            wanted = sorted(run.messages([topic.name]), key=lambda message: message.log_time)
+            assert wanted, topic.name
+            of_topic = [(time, content) for name, time, content in found if name == topic.name]
+            for (time, content), recorded in zip(of_topic, wanted, strict=True):
+                message = deserialize_message(recorded.data, message_type(topic))
+                assert time == recorded.log_time
+                assert repr(plain(content, message)) == repr(plain(message, message))
 
     @pytest.mark.parametrize('as_file', [False, True])
     def test_rosbags(self, recorded: Recorded, as_file: bool) -> None:
         with AnyReader([file_of(recorded.folder) if as_file else recorded.folder]) as reader:
             assert {name: topic.msgcount for name, topic in reader.topics.items()} == open_bag(recorded.folder).counts
-            found = [Message(connection.topic, time, reader.deserialize(data, connection.msgtype))
-                     for connection, time, data in reader.messages()]
-        assert_as_rclpy_reads(found, recorded.folder)
+            self.assert_as_rclpy_reads([(connection.topic, time, reader.deserialize(data, connection.msgtype))
+                                        for connection, time, data in reader.messages()], recorded.folder)
 
     def test_mcap_ros2(self, recorded: Recorded) -> None:
         with file_of(recorded.folder).open('rb') as stream:
             reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
-            found = [Message(item.channel.topic, item.message.log_time, item.decoded_message)
-                     for item in reader.iter_decoded_messages()]
-        assert_as_rclpy_reads(found, recorded.folder)
+            self.assert_as_rclpy_reads([(item.channel.topic, item.message.log_time, item.decoded_message)
+                                        for item in reader.iter_decoded_messages()], recorded.folder)
 
 
-class Message(NamedTuple):
-    """A message as a reader gives it."""
-
-    topic: str
-    time: int
-    content: Any
-
-
-def assert_as_rclpy_reads(found: list[Message], folder: Path) -> None:
-    kinds = {topic.name: message_type(topic) for topic in TOPICS}
-    run = open_bag(folder)
-    assert len(found) == sum(run.counts.values())
-    for topic, kind in kinds.items():
-        of_topic = [message for message in found if message.topic == topic]
-        for message, recorded in zip(of_topic, in_time(run, topic), strict=True):
-            wanted = deserialize_message(recorded.data, kind)
-            assert message.time == recorded.log_time
-            assert repr(plain(message.content, wanted)) == repr(plain(wanted, wanted))
-
-
-def in_time(run: Bag, topic: str) -> list[RecordedMessage]:
-    return sorted(run.messages([topic]), key=lambda message: message.log_time)
-
-
-class TestGraph:
-    def test_type_hashes_and_quality_are_those_of_the_graph(self, recorded: Recorded) -> None:
-        run = open_bag(recorded.folder)
-        for topic in TOPICS:
-            channel, offered = run.channel_metadata[topic.name], recorded.offers[topic.name]
-            quality, = yaml.safe_load(channel['offered_qos_profiles'])
-            assert channel['topic_type_hash'] == offered.type_hash
-            assert (quality['reliability'], quality['durability']) == (offered.reliability, offered.durability)
+def test_type_hashes_and_quality_are_those_of_the_graph(recorded: Recorded) -> None:
+    run = open_bag(recorded.folder)
+    for topic in TOPICS:
+        channel, offered = run.channel_metadata[topic.name], recorded.offers[topic.name]
+        quality, = yaml.safe_load(channel['offered_qos_profiles'])
+        assert (channel['topic_type_hash'], quality['reliability'], quality['durability']) == offered
 
 
 class TestFilesOfRosbag2:
     """Version 9 of its metadata, as `rosbag2_storage` of Jazzy writes and reads it (yaml.hpp, qos.cpp)."""
 
-    def test_while_it_is_recorded(self, recorded: Recorded) -> None:
-        """No message is promised that a reader might miss, and every topic is named."""
+    def test_while_it_is_recorded(self, recorded: Recorded, tmp_path: Path) -> None:
+        """No message is promised that a reader might miss, every topic is named, and the file says the same."""
         body = recorded.metadata
         assert (body['message_count'], body['duration'], body['starting_time']) == (
             0, {'nanoseconds': 0}, {'nanoseconds_since_epoch': 0})
         assert names_and_counts(body) == {topic.name: 0 for topic in TOPICS}
+        data = file_of(recorded.folder).read_bytes()
+        (tmp_path / 'cut.mcap').write_bytes(data[:len(data) // 2])
+        with pytest.warns(RecordingWarning, match='no end'):
+            assert yaml.safe_load(open_bag(tmp_path / 'cut.mcap').metadata['rosbag2']['serialized_metadata']) == body
 
     def test_at_the_end(self, recorded: Recorded) -> None:
         body, run = information(recorded.folder), open_bag(recorded.folder)
         times = [message.log_time for message in run.messages()]
+        assert yaml.safe_load(run.metadata['rosbag2']['serialized_metadata']) == body
         assert body['message_count'] == len(times)
         assert body['starting_time'] == {'nanoseconds_since_epoch': min(times)}
         assert body['duration'] == {'nanoseconds': max(times) - min(times)}
@@ -168,10 +143,9 @@ class TestFilesOfRosbag2:
         assert body['files'] == [{'path': 'run_0.mcap', 'starting_time': body['starting_time'],
                                   'duration': body['duration'], 'message_count': len(times)}]
         with file_of(recorded.folder).open('rb') as stream:
-            summary = make_reader(stream).get_summary()
-        assert summary is not None
-        assert summary.statistics is not None
-        assert (summary.statistics.message_start_time, summary.statistics.message_end_time) == (min(times), max(times))
+            statistics = getattr(make_reader(stream).get_summary(), 'statistics', None)
+        assert statistics is not None
+        assert (statistics.message_start_time, statistics.message_end_time) == (min(times), max(times))
 
     def test_keys_types_and_their_order(self, recorded: Recorded) -> None:
         body = information(recorded.folder)
@@ -186,34 +160,16 @@ class TestFilesOfRosbag2:
             topic = entry['topic_metadata']
             assert list(topic) == ['name', 'type', 'serialization_format', 'offered_qos_profiles',
                                    'type_description_hash']
-            quality, = topic['offered_qos_profiles']
-            known = next(topic.qos for topic in TOPICS if topic.name == entry['topic_metadata']['name'])
-            assert quality == {
+            known = next(one.qos for one in TOPICS if one.name == topic['name'])
+            assert topic['offered_qos_profiles'] == [{
                 'history': 'keep_last', 'depth': known.depth, 'reliability': known.reliability,
                 'durability': known.durability, 'deadline': ENDLESS, 'lifespan': ENDLESS, 'liveliness': 'automatic',
-                'liveliness_lease_duration': ENDLESS, 'avoid_ros_namespace_conventions': False}
+                'liveliness_lease_duration': ENDLESS, 'avoid_ros_namespace_conventions': False}]
 
     def test_in_block_style(self, recorded: Recorded) -> None:
         text = (recorded.folder / 'metadata.yaml').read_text()
         assert text.startswith('rosbag2_bagfile_information:\n  version: 9\n  storage_identifier: mcap\n  duration:\n')
-        assert '''
-        offered_qos_profiles:
-          - history: keep_last
-            depth: 1
-            reliability: reliable
-            durability: transient_local
-            deadline:
-              sec: 9223372036
-              nsec: 854775807
-''' in text
-
-    def test_the_file_says_it_too_at_both_ends(self, recorded: Recorded, tmp_path: Path) -> None:
-        data = file_of(recorded.folder).read_bytes()
-        (tmp_path / 'cut.mcap').write_bytes(data[:len(data) // 2])
-        with pytest.warns(RecordingWarning, match='no end'):
-            cut = open_bag(tmp_path / 'cut.mcap')
-        assert said_in(cut) == recorded.metadata
-        assert said_in(open_bag(recorded.folder)) == information(recorded.folder)
+        assert '\n        offered_qos_profiles:\n          - history: keep_last\n            depth: 1\n' in text
 
     def test_a_schema_is_what_rosbag2_would_store(self) -> None:
         """Depth first, sorted by name, each definition once (docs/message_definition_encoding.md of rosbag2)."""
@@ -227,36 +183,36 @@ def names_and_counts(body: Mapping[str, Any]) -> dict[str, int]:
     return {entry['topic_metadata']['name']: entry['message_count'] for entry in body['topics_with_message_count']}
 
 
-def said_in(run: Bag) -> Any:
-    return yaml.safe_load(run.metadata['rosbag2']['serialized_metadata'])
-
-
 class TestLayouts:
     """The programs themselves are not here: what their layouts name is what a run has."""
 
-    def test_plotjuggler(self) -> None:
+    MAIN = frozenset({('/slider_state', 'position'), ('/slider_state', 'velocity'), ('/friction_force', 'force'),
+                      ('/slider_state', 'mode')})
+
+    @pytest.fixture
+    def numbers(self) -> set[tuple[str, str]]:
+        """Return the topics of a run with their fields."""
+        return {(topic.name, name) for topic in TOPICS
+                for name, _ in store_of({topic.type: schema(topic.type).text}).fielddefs[topic.type][1]} - {
+                    (topic.name, 'header') for topic in TOPICS}
+
+    def test_plotjuggler(self, numbers: set[tuple[str, str]]) -> None:
         root = ElementTree.parse(PACKAGE / 'layouts' / 'plotjuggler.xml').getroot()
-        curves = [value for curve in root.iter('curve') for key, value in curve.attrib.items()
-                  if key in ('curve_x', 'curve_y') or (key == 'name' and 'curve_x' not in curve.attrib)]
-        assert {'/slider_state/position', '/slider_state/velocity', '/friction_force/force',
-                '/slider_state/mode'} <= set(curves)
-        for curve in curves:
-            topic, _, field = curve.rpartition('/')
-            assert field in numbers_of(topic), curve
+        curves = {(topic, field) for curve in root.iter('curve') for key, value in curve.attrib.items()
+                  if key in ('curve_x', 'curve_y') or (key == 'name' and 'curve_x' not in curve.attrib)
+                  for topic, _, field in [value.rpartition('/')]}
+        assert self.MAIN <= curves <= numbers
         for splitter in root.iter('DockSplitter'):
             assert int(splitter.attrib['count']) == len(splitter) == len(splitter.attrib['sizes'].split(';'))
 
-    def test_foxglove(self) -> None:
+    def test_foxglove(self, numbers: set[tuple[str, str]]) -> None:
         layout = json.loads((PACKAGE / 'layouts' / 'foxglove.json').read_text())
         panels = layout['configById']
         assert sorted(leaves(layout['layout'])) == sorted(panels)
-        paths = [path['value'] for panel in panels.values()
-                 for path in (*panel.get('paths', ()), *([panel['xAxisPath']] if 'xAxisPath' in panel else ()))]
-        assert {'/slider_state.position', '/slider_state.velocity', '/friction_force.force',
-                '/slider_state.mode'} <= set(paths)
-        for path in paths:
-            topic, _, field = path.rpartition('.')
-            assert field in numbers_of(topic), path
+        paths = {(topic, field) for panel in panels.values()
+                 for path in (*panel.get('paths', ()), *([panel['xAxisPath']] if 'xAxisPath' in panel else ()))
+                 for topic, _, field in [path['value'].rpartition('.')]}
+        assert self.MAIN <= paths <= numbers
         assert panels['RawMessages!run']['topicPath'] in [topic.name for topic in TOPICS]
 
 
@@ -266,19 +222,3 @@ def leaves(tree: Any) -> Iterator[str]:
     else:
         yield from leaves(tree['first'])
         yield from leaves(tree['second'])
-
-
-def numbers_of(topic: str) -> set[str]:
-    kind, = (known.type for known in TOPICS if known.name == topic)
-    definition = store_of({kind: schema(kind).text}).fielddefs[kind][1]
-    return {name for name, _ in definition if name != 'header'}
-
-
-def test_the_launch_file_names_parameters_of_the_replay() -> None:
-    from stickslip_sim.ros.replay.replay_settings import REPLAY_PARAMETERS
-    tree = ast.parse((PACKAGE / 'launch' / 'replay.launch.py').read_text())
-    arguments = next(node.value for node in tree.body if isinstance(node, ast.Assign))
-    known = {entry.name: entry.default for entry in REPLAY_PARAMETERS}
-    for name, (default, _) in ast.literal_eval(arguments).items():
-        assert name in known
-        assert default in (None, '') or yaml.safe_load(default) == known[name]   # empty is left out

@@ -1,46 +1,63 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The launch files: what they declare, and what the nodes do that they would start."""
+"""The launch files: what they declare, and what the nodes do that they would start.
 
+The wheels of ROS lack launch; a double of it, tests/support/launch_files.py, takes its place.
+"""
+
+import json
+import os
 import re
 import shlex
+import signal
+import subprocess
+import sys
+from contextlib import suppress
+from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import pytest
+import yaml
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import open_bag
+from stickslip_sim.ros.controllers.controller_node import COMMON, COMPENSATION
 from stickslip_sim.scene.schema import BY_NAME
+from tests.support import say_words
 from tests.support.launch_files import FILES, LAUNCH, Started, launched
 from tests.support.node_processes import assert_clean, executable, running
 from tests.support.ros_nodes import client
+from tests.support.tool import restore_interrupt
+from tests.support.waiting import DEADLINE
 
-from stickslip_sim.ros.controllers.controller_parameters import (  # isort: skip  # after ros_nodes, which skips
-    COMMON, COMPENSATION,
-)
-from stickslip_sim.ros.replay.replay_settings import REPLAY_PARAMETERS  # isort: skip
+from stickslip_sim.ros.replay.span import REPLAY_PARAMETERS  # isort: skip
 from tests.support.robot_descriptions import expanded  # isort: skip
 from tests.support.ros2_control_client import Description  # isort: skip
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 CONTROLLER = {entry.name for entry in (*COMMON, *COMPENSATION)}
-KNOWN = {'sim_node': set(BY_NAME), 'replay_node': {entry.name for entry in REPLAY_PARAMETERS},
-         'cascade_controller': CONTROLLER, 'compensating_controller': CONTROLLER}
+REPLAY = {entry.name: entry.default for entry in REPLAY_PARAMETERS}
+KNOWN = {'sim_node': set(BY_NAME), 'replay_node': set(REPLAY), 'cascade_controller': CONTROLLER,
+         'compensating_controller': CONTROLLER}
 NEEDED = {'replay': {'bag': 'runs/a'}}    # what has no default
 OF_SIM = {'scene', 'namespace', 'mode', 'rate', 'record'}
+CASES = yaml.safe_load(Path(__file__).with_name('launched.yaml').read_text(encoding='utf-8'))
 
 
-def parameters_of(process: Started) -> list[str]:
-    return [word.partition(':=')[0] for flag, word in zip(process.words, process.words[1:]) if flag == '-p']
+def given(name: str, **words: str) -> list[Started]:
+    """Return what a launch file starts when these arguments are given beside those that it needs."""
+    return launched(name, **{**NEEDED.get(name, {}), **words}).processes
 
 
-def words_of(process: Started) -> str:
-    return ' '.join(process.words)
-
-
-def test_all_of_them_are_looked_at() -> None:
-    assert set(FILES) >= {'sim', 'controlled', 'axes', 'display', 'ros2_control'}
+def xacro_of(process: Started) -> tuple[Path, list[str]]:
+    """Return the file that xacro expands for a node, and the words that it is given."""
+    command = re.search(r'\$\(xacro (.*)\)', ' '.join(process.words))
+    assert command is not None
+    file, *words = shlex.split(command[1])
+    return Path(file), words
 
 
 @pytest.mark.parametrize('name', FILES)
@@ -53,34 +70,90 @@ class TestEach:
     def test_names_exist(self, name: str) -> None:
         for process in launched(name, **NEEDED.get(name, {})).ours:
             assert executable(process.executable)
-            assert set(parameters_of(process)) <= KNOWN[process.executable]
+            parameters = {word.partition(':=')[0] for flag, word in pairwise(process.words) if flag == '-p'}
+            assert parameters <= KNOWN[process.executable]
 
     def test_its_head_shows_how_to_start_it(self, name: str) -> None:
-        head = FILES[name].read_text(encoding='utf-8').split('"""')[1]
-        assert f'ros2 launch stickslip_sim {name}.launch.py' in head
+        assert f'ros2 launch stickslip_sim {name}.launch.py' in FILES[name].read_text(encoding='utf-8').split('"""')[1]
 
 
-class TestSim:
-    def test_what_is_empty_is_left_to_the_scene(self) -> None:
-        axis, = launched('sim').processes
-        assert axis.executable == 'sim_node'
-        assert words_of(axis) == ('--ros-args -p scene:=paper_fig8 --ros-args -r __node:=feed_axis -r __ns:=/'
-                                  ' -r /clock:=/clock -r joint_states:=joint_states')
+class TestWords:
+    """What the nodes of a launch file are started with."""
 
-    def test_further_parameters_may_have_blanks(self) -> None:
-        axis, = launched('sim', parameters="seed:=3 friction.kinetic.velocities:='[0.0, 0.1]'").processes
-        assert axis.words[3:7] == ['-p', 'seed:=3', '-p', 'friction.kinetic.velocities:=[0.0, 0.1]']
+    @pytest.mark.parametrize('case', CASES, ids=lambda case: f'{case["file"]}: {case["case"]}')
+    def test_are_those_of_the_case(self, case: Any) -> None:
+        started = ['  '.join([process.executable, *process.words]) for process in given(case['file'], **case['given'])]
+        assert [line.replace(str(LAUNCH.parent), 'SHARE') for line in started] == case['starts'].splitlines()
+        for shipped in re.findall(r'SHARE/([\w/.]+)', case['starts']):
+            assert (LAUNCH.parent / shipped).is_file()
 
-    @pytest.mark.parametrize(('parameters', 'advice'), [
-        ('seed 3', 'NAME:=VALUE'), ('seed := 3', 'NAME:=VALUE'), ("seed:='3", 'close each quote')])
-    def test_parameters_that_are_none_are_refused(self, parameters: str, advice: str) -> None:
-        with pytest.raises(ValueError, match=f'^parameters: .*{advice}'):
-            launched('sim', parameters=parameters)
+    def test_controlled_ends_with_the_first_that_ends(self) -> None:
+        assert launched('controlled').ends == ['shutdown']
 
-    def test_for_real(self, tmp_path: Path) -> None:
+    def test_display_gives_the_description_its_prefix(self) -> None:
+        file, words = xacro_of(given('display', prefix='x_')[0])
+        assert '"x_axis_slider"' in expanded(file, *words)
+
+    @pytest.mark.parametrize(('namespace', 'prefix'), [('mill', '/mill'), ('/mill/', '/mill'), ('', '')])
+    def test_ros2_control_gives_the_hardware_the_topics_of_the_axis(self, namespace: str, prefix: str) -> None:
+        _, words = xacro_of(given('ros2_control', namespace=namespace)[0])
+        for name in ('joint_states', 'joint_commands'):
+            assert Description(*words).parameters[f'{name}_topic'] == f'{prefix}/{name}'
+
+    def test_replay_has_the_defaults_of_the_node(self) -> None:
+        for argument in launched('replay', **NEEDED['replay']).arguments:
+            if argument.default_value:    # empty is left out
+                assert yaml.safe_load(argument.default_value) == REPLAY[argument.name]
+
+
+class TestRefusals:
+    @pytest.mark.parametrize(('name', 'words', 'message'), [
+        ('sim', {'parameters': 'seed 3'}, '^parameters: .*NAME:=VALUE'),
+        ('sim', {'parameters': 'seed := 3'}, '^parameters: .*NAME:=VALUE'),
+        ('sim', {'parameters': "seed:='3"}, '^parameters: .*close each quote'),
+        *(('axes', {'axes': axes}, 'NAMESPACE:SCENE')
+          for axes in ('', 'x', ':positioning', 'x:', 'x:positioning /x:paper_fig8')),
+    ])
+    def test_of_values(self, name: str, words: dict[str, str], message: str) -> None:
+        with pytest.raises(ValueError, match=message):
+            given(name, **words)
+
+    @pytest.mark.parametrize(('name', 'argument', 'value'), [
+        ('controlled', 'controller', 'cascade'), ('replay', 'mode', 'events'), ('ros2_control', 'controller', 'none'),
+        ('display', 'rviz', 'no')])
+    def test_of_a_choice_that_is_none(self, name: str, argument: str, value: str) -> None:
+        with pytest.raises(RuntimeError, match=f'Argument "{argument}" provided value "{value}" is not valid'):
+            given(name, **{argument: value})
+
+    def test_of_a_replay_without_a_bag(self) -> None:
+        with pytest.raises(RuntimeError, match='"bag" was not provided'):
+            launched('replay')
+
+    @pytest.mark.parametrize(('name', 'word', 'advice'), [
+        ('sim', 'scen:=paper_fig7', 'did you mean scene'), ('controlled', 'fed:=0.01', 'did you mean feed'),
+        ('controlled', 'flder:=a', 'did you mean folder'), ('axes', 'scene:=paper_fig7', 'drop it'),
+        ('replay', 'topic:=a', 'did you mean topics'), ('display', 'prefx:=x_', 'did you mean prefix'),
+        ('ros2_control', 'namspace:=a', 'did you mean namespace')])
+    def test_of_an_argument_that_is_none(self, monkeypatch: pytest.MonkeyPatch, name: str, word: str,
+                                         advice: str) -> None:
+        """Launch itself passes over it."""
+        monkeypatch.setattr('sys.argv', ['ros2', 'launch', 'stickslip_sim', f'{name}.launch.py', 'launch-prefix:=a',
+                                         word])
+        with pytest.raises(InputError, match=f"^{word.partition(':=')[0]} = .* is refused: .*{advice}"):
+            given(name)
+
+    def test_not_of_arguments_of_a_file_that_includes_it(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.setattr('sys.argv', ['ros2', 'launch', 'cell', 'cell.launch.py', 'robot:=arm'])
+        assert launched('controlled').ours
+
+
+class TestNodes:
+    """The nodes that would be started."""
+
+    def test_of_sim(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'
-        axis, = launched('sim', scene='cutting_force', namespace='press', mode='free_run', rate='500', record='true',
-                         folder=str(folder), parameters='seed:=3 time.factor:=2.0', clock='clock').processes
+        axis, = given('sim', scene='cutting_force', namespace='press', mode='free_run', rate='500', record='true',
+                      folder=str(folder), parameters='seed:=3 time.factor:=2.0', clock='clock')
         with running(*axis.words, afresh=True) as process, client('/press') as press:
             press.connect()
             press.next('slider_state', lambda state: state.step > 100)
@@ -93,24 +166,9 @@ class TestSim:
         facts = open_bag(folder).metadata['stickslip']
         assert (facts['scene'], facts['rate']) == ('cutting_force', '500.0')
 
-
-class TestControlled:
-    def test_both_in_one_namespace(self) -> None:
-        axis, controller = launched('controlled', namespace='mill', rate='2000', controller='compensating_controller',
-                                    parameters='seed:=3').processes
-        assert (axis.executable, controller.executable) == ('sim_node', 'compensating_controller')
-        assert '-r __ns:=/mill' in words_of(axis)
-        assert '-r __ns:=/mill' in words_of(controller)
-        assert parameters_of(axis) == ['scene', 'time.rate', 'record.enabled', 'joint_interface.enabled',
-                                       'drive.course', 'drive.velocity', 'joint_interface.prefix', 'seed']
-        assert parameters_of(controller) == ['moves.feed', 'moves.travel', 'joint_interface.prefix']
-
-    def test_it_ends_with_the_first_that_ends(self) -> None:
-        assert launched('controlled').ends == ['shutdown']
-
-    def test_the_controller_moves_the_axis(self, tmp_path: Path) -> None:
-        axis, controller = launched('controlled', namespace='mill', folder=str(tmp_path / 'run'),
-                                    feed='0.01', prefix='y').processes    # to YAML a truth value
+    def test_of_controlled(self, tmp_path: Path) -> None:
+        axis, controller = given('controlled', namespace='mill', folder=str(tmp_path / 'run'),
+                                 feed='0.01', prefix='y')    # to YAML a truth value
         with running(*axis.words, afresh=True) as bench, client('/mill') as mill:
             mill.connect()
             with running(*controller.words, program=controller.executable, afresh=True) as following:
@@ -119,113 +177,67 @@ class TestControlled:
             assert_clean(*bench.end())
 
 
-class TestAxes:
-    @pytest.mark.parametrize('axes', ['', 'x', ':positioning', 'x:', 'x:positioning /x:paper_fig8'])
-    def test_what_is_no_axis_is_refused(self, axes: str) -> None:
-        with pytest.raises(ValueError, match='NAMESPACE:SCENE'):
-            launched('axes', axes=axes)
-
-    def test_each_in_its_namespace_with_its_clock(self) -> None:
-        x, y = launched('axes', axes='x:positioning y:/a/scene.yaml', rate='500').processes
-        assert parameters_of(x) == parameters_of(y) == ['scene', 'time.rate']
-        assert 'scene:=positioning' in x.words
-        assert 'scene:=/a/scene.yaml' in y.words
-        for namespace, axis in (('/x', x), ('/y', y)):
-            assert words_of(axis).endswith(f'-r __ns:={namespace} -r /clock:=clock -r joint_states:=joint_states')
-
-    def test_joints_with_prefixes_on_one_topic(self) -> None:
-        x, y = launched('axes', axes='x:positioning cell/y:paper_fig8', joints='/joint_states',
-                        parameters='seed:=3').processes
-        for prefix, axis in (('x_', x), ('cell/y_', y)):
-            assert parameters_of(axis) == ['scene', 'joint_interface.enabled', 'joint_interface.prefix', 'seed']
-            assert f"joint_interface.prefix:='{prefix}'" in axis.words
-            assert words_of(axis).endswith('-r joint_states:=/joint_states')
+# What `ros2 launch` does with a file and name:=value; without a terminal, so that launch passes the signal on.
+PROGRAM = '''
+import sys
+from launch import LaunchDescription, LaunchService
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+file, *words = sys.argv[1:]
+service = LaunchService(noninteractive=True)
+service.include_launch_description(LaunchDescription([IncludeLaunchDescription(
+    PythonLaunchDescriptionSource(file), launch_arguments=[tuple(word.split(':=', 1)) for word in words])]))
+sys.exit(service.run())
+'''
 
 
-class TestDisplay:
-    def test_axis_description_and_rviz(self) -> None:
-        publisher, rviz, axis = launched('display', namespace='mill', prefix='y', parameters='seed:=3').processes
-        assert parameters_of(axis) == ['scene', 'joint_interface.enabled', 'joint_interface.prefix', 'seed']
-        assert "joint_interface.prefix:='y'" in axis.words
-        for node in (publisher, axis):
-            assert '-r joint_states:=/joint_states' in words_of(node)
-        assert rviz.words[:2] == ['-d', f'{LAUNCH.parent}/rviz/feed_axis.rviz']
-        assert Path(rviz.words[1]).is_file()
-
-    def test_xacro_gives_the_description_the_prefix(self) -> None:
-        command = re.search(r'\$\((.*)\)', words_of(launched('display', prefix='x_').processes[0]))
-        assert command is not None
-        xacro, file, *words = shlex.split(command[1])
-        assert (xacro, file) == ('xacro', f'{LAUNCH.parent}/urdf/feed_axis.urdf.xacro')
-        assert '"x_axis_slider"' in expanded(Path(file), *words)
-
-    def test_of_axes_that_run_already(self) -> None:
-        publisher, = launched('display', axis='false', rviz='false', description='cross_table.urdf.xacro').processes
-        assert f'{LAUNCH.parent}/urdf/cross_table.urdf.xacro' in words_of(publisher)
-
-    def test_a_path_is_a_file_of_your_own(self) -> None:
-        publisher, rviz, _ = launched('display', description='/a b/c.xacro', rviz_config='/a b/c.rviz').processes
-        assert "'/a b/c.xacro'" in words_of(publisher)
-        assert rviz.words[1] == '/a b/c.rviz'
+def said_by_launch(name: str, *words: str, folder: Path) -> tuple[int, str]:
+    """Run a launch file until it ends; return its exit code and what it printed.  It leaves no process behind."""
+    process = subprocess.Popen([sys.executable, '-c', PROGRAM, str(FILES[name]), *words], cwd=folder, text=True,
+                               env={**os.environ, 'ROS_LOG_DIR': str(folder / 'log')}, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, start_new_session=True, preexec_fn=restore_interrupt)
+    try:
+        output, _ = process.communicate(timeout=DEADLINE)
+        return process.returncode, output
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
 
 
-class TestRos2Control:
-    def test_shipped_files_and_topics_of_the_axis(self) -> None:
-        publisher, manager, broadcaster, spawner, axis = launched('ros2_control', namespace='mill',
-                                                                   parameters='seed:=3').processes
-        assert '-r __ns:=/mill' in words_of(axis)
-        assert parameters_of(axis) == ['scene', 'joint_interface.enabled', 'seed']
-        assert f'{LAUNCH.parent}/ros2_control/feed_axis.ros2_control.xacro' in words_of(publisher)
-        shipped = f'{LAUNCH.parent}/ros2_control/controllers.yaml'
-        assert all(shipped in process.words for process in (manager, broadcaster, spawner))
-        assert [process.words[0] for process in (broadcaster, spawner)] == ['joint_state_broadcaster',
-                                                                            'velocity_controller']
+@pytest.mark.skipif(find_spec('launch_ros') is None, reason='launch is not installed')
+class TestLaunchItself:
+    """Here the double is held to what launch does, too; `.ci/ros2 launch` runs the nodes, and gives wrong words."""
 
-    @pytest.mark.parametrize(('namespace', 'prefix'), [('mill', '/mill'), ('/mill/', '/mill'), ('', '')])
-    def test_xacro_gives_the_hardware_the_topics_of_the_axis(self, namespace: str, prefix: str) -> None:
-        publisher = launched('ros2_control', namespace=namespace).processes[0]
-        command = re.search(r'\$\((.*)\)', words_of(publisher))
-        assert command is not None
-        xacro, file, *arguments = shlex.split(command[1])
-        assert (xacro, file) == ('xacro', f'{LAUNCH.parent}/ros2_control/feed_axis.ros2_control.xacro')
-        parameters = Description(*arguments).parameters
-        for name in ('joint_states', 'joint_commands'):
-            assert parameters[f'{name}_topic'] == f'{prefix}/{name}'
+    def test_an_axis_ends_with_its_controller(self, tmp_path: Path) -> None:
+        _, output = said_by_launch('controlled', 'feed:=-1.0', 'record:=false', folder=tmp_path)
+        assert 'moves.feed = -1.0 is refused' in output
+        assert 'process[cascade_controller-2] was required: shutting down launched system' in output
+        assert '[sim_node-1]: process has finished cleanly' in output
 
+    @pytest.mark.parametrize('case', [case for case in CASES if case['file'] not in ('display', 'ros2_control')],
+                             ids=lambda case: f'{case["file"]}: {case["case"]}')
+    def test_the_double_starts_what_launch_starts(self, case: Any, tmp_path: Path) -> None:
+        """Launch puts a program in front of each command, which writes its words and does not run it."""
+        written = tmp_path / 'written'
+        prefix = f'launch-prefix:={sys.executable} {say_words.__file__} {written}'
+        given_words = (f'{key}:={value}' for key, value in case['given'].items())
+        code, output = said_by_launch(case['file'], prefix, *given_words, folder=tmp_path)
+        assert code == 0, output
+        commands = [json.loads(line) for line in written.read_text(encoding='utf-8').splitlines()]
+        assert sorted([Path(program).name, *words] for program, *words in commands) == sorted(
+            [started.executable, *started.words] for started in given(case['file'], **case['given']))
 
-@pytest.mark.parametrize(('name', 'argument', 'value'), [
-    ('controlled', 'controller', 'cascade'), ('replay', 'mode', 'events'), ('ros2_control', 'controller', 'none'),
-    ('display', 'rviz', 'no')])
-def test_a_choice_that_is_none_is_refused(name: str, argument: str, value: str) -> None:
-    with pytest.raises(RuntimeError, match=f'Argument "{argument}" provided value "{value}" is not valid'):
-        launched(name, **{**NEEDED.get(name, {}), argument: value})
-
-
-class TestReplay:
-    def test_needs_a_bag(self) -> None:
-        with pytest.raises(RuntimeError, match='"bag" was not provided'):
-            launched('replay')
-
-    def test_what_is_empty_is_left_out(self) -> None:
-        every, some = (launched('replay', bag='runs/a', **given).processes[0] for given in (
-            {}, {'topics': '[slider_state, mode_event]', 'mode': 'commands', 'axis': '/mill/feed_axis'}))
-        assert {'topics', 'axis'} & set(parameters_of(every)) == set()
-        assert {'topics:=[slider_state, mode_event]', 'axis:=/mill/feed_axis'} <= set(some.words)
-
-
-@pytest.mark.parametrize(('name', 'word', 'advice'), [
-    ('sim', 'scen:=paper_fig7', 'did you mean scene'), ('controlled', 'fed:=0.01', 'did you mean feed'),
-    ('controlled', 'flder:=a', 'did you mean folder'), ('axes', 'scene:=paper_fig7', 'drop it'),
-    ('replay', 'topic:=a', 'did you mean topics'), ('display', 'prefx:=x_', 'did you mean prefix'),
-    ('ros2_control', 'namspace:=a', 'did you mean namespace')])
-def test_an_argument_that_is_none_is_refused(monkeypatch: pytest.MonkeyPatch, name: str, word: str,
-                                             advice: str) -> None:
-    """Launch itself passes over it."""
-    monkeypatch.setattr('sys.argv', ['ros2', 'launch', 'stickslip_sim', f'{name}.launch.py', 'launch-prefix:=a', word])
-    with pytest.raises(InputError, match=f"^{word.partition(':=')[0]} = .* is refused: .*{advice}"):
-        launched(name, **NEEDED.get(name, {}))
-
-
-def test_a_file_that_includes_one_has_arguments_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr('sys.argv', ['ros2', 'launch', 'cell', 'cell.launch.py', 'robot:=arm'])
-    assert launched('controlled').ours
+    @pytest.mark.parametrize('name', FILES)
+    def test_the_double_knows_the_arguments_that_launch_knows(self, name: str) -> None:
+        """Those that `ros2 launch --show-args` shows."""
+        from launch import LaunchContext
+        from launch.launch_description_sources import PythonLaunchDescriptionSource
+        from launch.utilities import perform_substitutions
+        context = LaunchContext()
+        declared = launched(name, **NEEDED.get(name, {})).arguments
+        ours = {argument.name: argument for argument in reversed(declared)}    # the first counts
+        description = PythonLaunchDescriptionSource(str(FILES[name])).get_launch_description(context)
+        for theirs in description.get_launch_arguments():
+            default = theirs.default_value and perform_substitutions(context, theirs.default_value)
+            assert (ours[theirs.name].default_value, ours[theirs.name].choices) == (default, theirs.choices)
+            assert theirs.description.startswith(ours[theirs.name].description)    # launch adds the choices

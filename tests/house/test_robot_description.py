@@ -23,38 +23,28 @@ EACH = [(ONE, ('',), ()), (ONE, ('x_',), ('prefix:=x_',)), (TWO, ('x_', 'y_'), (
 
 
 @pytest.mark.parametrize(('file', 'prefixes', 'words'), EACH)
-class TestEach:
-    def test_urdfdom_takes_it(self, file: Path, prefixes: tuple[str, ...], words: tuple[str, ...],
-                              tmp_path: Path) -> None:
-        reported = checked(expanded(file, *words), tmp_path)
-        assert 'root Link: world has 1 child(ren)' in reported
-        for prefix in prefixes:
-            assert all(f'  {prefix}{link}\n' in reported for link in ('bed', 'drive_end', 'slider'))
-
-    def test_joints_and_frame_are_those_of_the_messages(self, file: Path, prefixes: tuple[str, ...],
-                                                        words: tuple[str, ...], tmp_path: Path) -> None:
-        robot = ET.fromstring(expanded(file, *words))
-        moving = {joint.get('name'): joint for joint in robot.findall('joint') if joint.get('type') == 'prismatic'}
-        names = [JointNames.of(prefix) for prefix in prefixes]
-        assert set(moving) == {joint for axis in names for joint in axis.joints}
-        for axis in names:
-            for joint in axis.joints:
-                assert attribute(moving[joint], 'parent', 'link') == axis.bed
-                assert attribute(moving[joint], 'axis', 'xyz') == '1 0 0'
-                assert moving[joint].find('origin') is None    # the frames coincide at 0: positions are x in the bed
-
-    def test_links_are_seen_and_inert_but_for_the_root(self, file: Path, prefixes: tuple[str, ...],
-                                                       words: tuple[str, ...], tmp_path: Path) -> None:
-        robot = ET.fromstring(expanded(file, *words))
-        links = [link for link in robot.findall('link') if link.get('name') != 'world']
-        assert len(links) == 3 * len(prefixes)
-        for link in links:
-            assert link.find('visual/geometry/box') is not None
-            assert float(attribute(link, 'inertial/mass', 'value')) > 0.0
-            x, y, z = sorted(float(attribute(link, 'inertial/inertia', name)) for name in ('ixx', 'iyy', 'izz'))
-            assert 0.0 < x <= y <= z < x + y    # as of a body
-        root, = (link for link in robot.findall('link') if link.get('name') == 'world')
-        assert len(root) == 0    # KDL, of robot_state_publisher, takes no root with inertia
+def test_each_is_taken_and_has_what_the_messages_name(file: Path, prefixes: tuple[str, ...], words: tuple[str, ...],
+                                                      tmp_path: Path) -> None:
+    reported = checked(expanded(file, *words), tmp_path)
+    assert 'root Link: world has 1 child(ren)' in reported
+    assert all(f'  {prefix}{link}\n' in reported for prefix in prefixes for link in ('bed', 'drive_end', 'slider'))
+    robot = ET.fromstring(expanded(file, *words))
+    moving = {joint.get('name'): joint for joint in robot.findall('joint') if joint.get('type') == 'prismatic'}
+    names = [JointNames.of(prefix) for prefix in prefixes]
+    assert set(moving) == {joint for axis in names for joint in axis.joints}
+    for axis in names:
+        for joint in axis.joints:
+            assert attribute(moving[joint], 'parent', 'link') == axis.bed
+            assert attribute(moving[joint], 'axis', 'xyz') == '1 0 0'
+            assert moving[joint].find('origin') is None    # the frames coincide at 0: positions are x in the bed
+    root, *links = sorted(robot.findall('link'), key=lambda link: link.get('name') != 'world')
+    assert (root.get('name'), len(root)) == ('world', 0)    # KDL, of robot_state_publisher, takes no root with inertia
+    assert len(links) == 3 * len(prefixes)
+    for link in links:
+        assert link.find('visual/geometry/box') is not None
+        assert float(attribute(link, 'inertial/mass', 'value')) > 0.0
+        x, y, z = sorted(float(attribute(link, 'inertial/inertia', name)) for name in ('ixx', 'iyy', 'izz'))
+        assert 0.0 < x <= y <= z < x + y    # as of a body
 
 
 def test_the_mass_of_the_slider() -> None:

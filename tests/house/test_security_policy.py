@@ -20,18 +20,11 @@ pytestmark = pytest.mark.ros
 
 FILE = ROOT / 'stickslip_sim/security/stickslip.policy.xml'
 POLICY = ET.parse(FILE).getroot()
-# What `ros2 security` takes of a policy: by element the attributes that must be there, that may be, and the children.
-STRUCTURE = {
-    'policy': ({'version'}, set(), {'enclaves'}),
-    'enclaves': (set(), set(), {'enclave'}),
-    'enclave': ({'path'}, set(), {'profiles'}),
-    'profiles': (set(), set(), {'profile'}),
-    'profile': ({'ns', 'node'}, set(), {'topics', 'services'}),
-    'topics': (set(), {'publish', 'subscribe'}, {'topic'}),
-    'services': (set(), {'request', 'reply'}, {'service'}),
-    'topic': (set(), set(), set()),
-    'service': (set(), set(), set()),
-}
+# What `ros2 security` takes of a policy: the children of each element, and the attributes that some must or may have.
+CHILDREN = {'policy': {'enclaves'}, 'enclaves': {'enclave'}, 'enclave': {'profiles'}, 'profiles': {'profile'},
+            'profile': {'topics', 'services'}, 'topics': {'topic'}, 'services': {'service'}}
+NEEDED = {'policy': {'version'}, 'enclave': {'path'}, 'profile': {'ns', 'node'}}
+ACTS = {'topics': {'publish', 'subscribe'}, 'services': {'request', 'reply'}}
 BAG = 'bag'
 OF_OWN_CONTROLLERS = {('publish', 'drive_velocity'), ('subscribe', 'slider_state'), ('subscribe', 'mode_event')}
 
@@ -46,10 +39,6 @@ class Started(NamedTuple):
     node: str
     namespace: str
     parameters: tuple[str, ...]
-
-    @property
-    def ros_arguments(self) -> list[str]:
-        return ['-r', f'__ns:={self.namespace}', *(word for value in self.parameters for word in ('-p', value))]
 
 
 PROGRAMS = [
@@ -83,11 +72,9 @@ def endpoints(look: Client, node: str, namespace: str) -> set[Act]:
     """Return what a node has on the graph; nothing while it is not there."""
     if (node, namespace) not in look.node.get_node_names_and_namespaces():
         return set()
-    return {(act, name) for act, ask in (
-        ('publish', look.node.get_publisher_names_and_types_by_node),
-        ('subscribe', look.node.get_subscriber_names_and_types_by_node),
-        ('reply', look.node.get_service_names_and_types_by_node),
-        ('request', look.node.get_client_names_and_types_by_node)) for name, _ in ask(node, namespace)}
+    acts = {'publish': 'publisher', 'subscribe': 'subscriber', 'reply': 'service', 'request': 'client'}
+    return {(act, name) for act, kind in acts.items()
+            for name, _ in getattr(look.node, f'get_{kind}_names_and_types_by_node')(node, namespace)}
 
 
 def covers(expression: Act, endpoint: Act) -> bool:
@@ -95,21 +82,17 @@ def covers(expression: Act, endpoint: Act) -> bool:
 
 
 def test_structure() -> None:
-    def check(element: ET.Element) -> None:
-        needed, possible, children = STRUCTURE[element.tag]
-        assert needed <= set(element.attrib) <= needed | possible, element.attrib
-        assert {child.tag for child in element} <= children, element.tag
-        assert children or (element.text and element.text == element.text.strip())
-        for child in element:
-            check(child)
-
-    check(POLICY)
-    assert [child.tag for child in POLICY] == ['enclaves']
-    assert all([child.tag for child in enclave] == ['profiles'] for enclave in POLICY.iter('enclave'))
-    assert POLICY.attrib['version'] == '0.2.0'
-    groups = [*POLICY.iter('topics'), *POLICY.iter('services')]
-    assert groups
-    assert all(list(group.attrib.values()) == ['ALLOW'] for group in groups)
+    assert POLICY.attrib == {'version': '0.2.0'}
+    for element in POLICY.iter():
+        assert {child.tag for child in element} <= CHILDREN.get(element.tag, set()), element.tag
+        if element.tag in ACTS:
+            assert set(element.attrib) <= ACTS[element.tag]
+            assert set(element.attrib.values()) == {'ALLOW'}
+        else:
+            assert set(element.attrib) == NEEDED.get(element.tag, set())
+        if element.tag not in CHILDREN:
+            assert element.text
+            assert element.text == element.text.strip()
 
 
 def test_ros2_security_takes_each_child_for_an_enclave() -> None:
@@ -127,7 +110,9 @@ def look(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
     assert run(['simulate', 'positioning', '--duration', '0.1', '--bag', str(folder / BAG)]) == 0
     with client() as looking, ExitStack() as stack:
         for program in PROGRAMS:
-            stack.enter_context(running(*program.ros_arguments, program=program.executable, folder=folder, afresh=True))
+            parameters = (word for value in program.parameters for word in ('-p', value))
+            stack.enter_context(running('-r', f'__ns:={program.namespace}', *parameters, program=program.executable,
+                                        folder=folder, afresh=True))
         yield looking
 
 

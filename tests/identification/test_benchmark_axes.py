@@ -16,7 +16,7 @@ from benchmarks.identify.varied import FEEDS, SENSORS, kind_of, varied_axes
 from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE
 from stickslip_sim.inputs.measurement import load_measurement
 from stickslip_sim.runs import simulate
-from stickslip_sim.study.uncertain_file import uncertain_of
+from stickslip_sim.study.uncertainty import uncertain_of
 
 FEW = 8
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip_sim.identification.search import many_fits
-from stickslip_sim.identification.search.stages import fit_from
-from stickslip_sim.identification.search.work_folder import WorkFolder
+from stickslip_sim.identification import many_fits
+from stickslip_sim.identification.many_fits import WorkFolder
+from stickslip_sim.identification.stages import fit_from
 from stickslip_sim.inputs import load_scene
 from tests.support.measured_axes import FREE, VALUES, Readings, free_file, readings, start_scene
 from tests.support.tool import Capture, answered, refused

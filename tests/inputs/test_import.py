@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import stickslip_sim as stickslip
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
@@ -218,3 +219,11 @@ def test_a_unit_has_a_factor(tmp_path: Path, capsys: Capture) -> None:
 def test_a_wrong_factor_is_refused(unit: str, data: Path, tmp_path: Path, capsys: Capture) -> None:
     assert '--unit' in refused(capsys, 'import', data, '--columns', 'time=t,position=x', '--unit',
                                f'time=ms,position={unit}', '--out', tmp_path / 'run')
+
+
+# Scenes by a path as Python has it.
+
+def test_a_path_is_as_good_as_a_name(tmp_path: Path) -> None:
+    file = tmp_path / 'axis.yaml'
+    file.write_text('/**:\n  ros__parameters:\n    scene: light\n    axis: {mass: 20.0}\n')
+    assert stickslip.load_scene(file).axis.mass == stickslip.load_scene(str(file)).axis.mass == 20.0

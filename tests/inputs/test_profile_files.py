@@ -10,7 +10,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError, RecordingError
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.inputs.units import FORCES, SPEEDS, all_in_si, in_si
+from stickslip_sim.inputs.csv_table import FORCES, SPEEDS, all_in_si, in_si
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene, parse_scene
@@ -218,7 +218,7 @@ def test_the_scene_of_a_simulation_runs_as_one_with_the_numbers_in_it(tmp_path: 
 def test_a_node_takes_the_profile_beside_its_parameter_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip('rclpy')
     from stickslip_sim.ros.node.parameters import scene_at_start
-    from stickslip_sim.ros.process.given_parameters import GivenParameters
+    from stickslip_sim.ros.programs import GivenParameters
 
     def at_start(*words: object) -> Scene:
         return scene_at_start(GivenParameters.read(['--ros-args', *map(str, words)]).of('/feed_axis'))

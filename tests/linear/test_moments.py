@@ -5,12 +5,14 @@
 import cmath
 import math
 import random
+from fractions import Fraction
 
+import mpmath
 import mpmath as mp
 import pytest
 
 from stickslip_sim.linear.moments import moments
-from stickslip_sim.linear.oscillator import Oscillator, oscillator
+from stickslip_sim.linear.oscillator import Oscillator, integrals, oscillator
 from stickslip_sim.linear.wave_products import (
     cycle_within,
     ramped_integral,
@@ -19,7 +21,7 @@ from stickslip_sim.linear.wave_products import (
     wave_moment,
     wave_products,
 )
-from stickslip_sim.linear.waves import TURN
+from stickslip_sim.linear.waves import TURN, phase_at, turns, wave_response
 
 KINDS = ('no damper', 'under-damped', 'near critical', 'over-damped', 'growing', 'no spring')
 
@@ -85,7 +87,7 @@ def test_a_slow_motion_beside_a_fast_one_keeps_its_digits() -> None:
             rates = ((level, mp.mpf(0)), (a, slow), (b, fast))
             exact = sum(c * d * (mp.expm1((k + j) * t) / (k + j) if k + j else t) for c, k in rates for d, j in rates)
         found = moments(oscillator(gamma, omega2), 0.0, 0.0, 2.0, 0.0, t)[5]
-        assert found == pytest.approx(float(exact), rel=1e-13)
+        assert found == pytest.approx(float(exact), rel=1e-13, abs=0.0)
 
 
 def test_a_motion_that_faded_long_ago_keeps_its_digits() -> None:
@@ -97,10 +99,11 @@ def test_a_motion_that_faded_long_ago_keeps_its_digits() -> None:
     _, _, first, second, third, square = moments(Oscillator(1.5e9, 2e18, -5e8, near, far), x, rate, 0.0, 0.0, t)
     once = a / -near + c / -far
     twice = a / near ** 2 + c / far ** 2
-    assert first == pytest.approx(once, rel=1e-13)
-    assert second == pytest.approx(once * t - twice, rel=1e-13)
-    assert third == pytest.approx(0.5 * once * t * t - twice * t, rel=1e-13)
-    assert square == pytest.approx(-0.5 * a * a / near - 2.0 * a * c / (near + far) - 0.5 * c * c / far, rel=1e-13)
+    assert first == pytest.approx(once, rel=1e-13, abs=0.0)
+    assert second == pytest.approx(once * t - twice, rel=1e-13, abs=0.0)
+    assert third == pytest.approx(0.5 * once * t * t - twice * t, rel=1e-13, abs=0.0)
+    exact = -0.5 * a * a / near - 2.0 * a * c / (near + far) - 0.5 * c * c / far
+    assert square == pytest.approx(exact, rel=1e-13, abs=0.0)
 
 
 @pytest.mark.parametrize('span', [1e-9, 1e-3, 0.3, 1.0, 30.0, 1e4, 1e9])
@@ -132,3 +135,77 @@ def test_the_integrals_of_waves(span: float) -> None:
 
 def _wave(rate: mp.mpc, t: float) -> mp.mpc:
     return mp.expm1(rate * t) / rate if rate else mp.mpf(t)
+
+
+# The closed-form answer to a sine, against 40 digits, and phases at late times.
+
+def _answer(gamma: float, omega2: float, frequency: float, t: float) -> tuple[float, ...]:
+    osc = oscillator(gamma, omega2)
+    g, rate, first, _, _ = integrals(osc, t)
+    found: tuple[float, ...] = wave_response(osc, TURN * frequency, turns(frequency, t), t, g, rate, first)
+    return found
+
+
+def _exact_waves(gamma: float, omega2: float, frequency: float, t: float) -> list[mpmath.mpc]:
+    """Return I, I′ and K at a time as sums over the roots of the characteristic polynomial, moved apart by 1e-60."""
+    with mpmath.workdps(150):
+        w = mpmath.mpf(TURN) * mpmath.mpf(frequency)   # the engine's w, not 2πf
+        c, d, time = mpmath.mpf(gamma), mpmath.mpf(omega2), mpmath.mpf(t)
+        root = mpmath.sqrt(c * c - d)
+        scale = abs(c) + abs(root) + w
+        nodes = [-c + root, -c - root + scale * mpmath.mpf(10) ** -40, mpmath.mpc(0, w) + scale * mpmath.mpf(10) ** -41]
+
+        def difference(points: list[mpmath.mpc], weight: int) -> mpmath.mpc:
+            return mpmath.fsum(mpmath.exp(z * time) * z ** weight / mpmath.fprod(z - o for o in points if o is not z)
+                               for z in points)
+
+        zero = scale * mpmath.mpf(10) ** -42
+        return [difference(nodes, 0), difference(nodes, 1), difference([*nodes, zero], 0)]
+
+
+def _cases() -> list[tuple[float, float, float, float]]:
+    rng = random.Random(5)
+    cases = []
+    for _ in range(1500):
+        omega = rng.choice((0.0, 10 ** rng.uniform(-3, 4)))
+        gamma = rng.choice((0.0, 1.0, 1.0 + 1e-9, rng.uniform(-0.2, 0.3), 10 ** rng.uniform(-3, 3))) * (omega or 1.0)
+        frequency = rng.choice((omega / TURN or 0.1, (omega or 1.0) / TURN * (1.0 + 10 ** rng.uniform(-15, -1)),
+                                10 ** rng.uniform(-4, 4), 10 ** rng.uniform(-4, 4)))
+        scale = rng.choice((omega or 1.0, abs(gamma) or 1.0, TURN * frequency))
+        t = 10 ** rng.uniform(-3, 2) / scale
+        if -gamma * t < 30.0 and max(omega, TURN * frequency) * t < 200.0:
+            cases.append((gamma, omega * omega, frequency, t))
+    return cases
+
+
+def test_answer_to_a_wave_is_right_to_rounding() -> None:
+    """Resonance, critical damping, no spring, no damper and growing modes included; errors by the size of each sum."""
+    worst = 0.0
+    for gamma, omega2, frequency, t in _cases():
+        found, exact = _answer(gamma, omega2, frequency, t), _exact_waves(gamma, omega2, frequency, t)
+        for n, value in enumerate(exact):
+            error = abs(complex(found[2 * n], found[2 * n + 1]) - complex(value)) / float(abs(value))
+            # the exponents of the eigenvalues are products that are rounded once
+            worst = max(worst, error / (1.0 + 0.1 * (abs(gamma) + omega2 ** 0.5 + TURN * frequency) * t))
+    assert worst < 1e-13
+
+
+def test_phase_at_late_times() -> None:
+    rng = random.Random(2)
+    for _ in range(500):
+        frequency, phase = 10 ** rng.uniform(-9, 6), rng.uniform(-1, 1)
+        second, fraction = float(rng.randint(0, 10 ** 10)), rng.random()
+        exact = Fraction(frequency) * (Fraction(second) + Fraction(fraction)) + Fraction(phase)
+        error = (Fraction(phase_at(frequency, phase, second, fraction)) - exact) % 1
+        assert min(error, 1 - error) < 1e-15
+
+
+def test_undamped_resonance_grows_for_ever() -> None:
+    """I of e^{iwt} on itself: t e^{iwt}/(2iw) − sin(wt)/(2iw²)."""
+    w = TURN * 3.0
+    for t in (1e-6, 0.1, 10.0, 1e4):
+        cycle = TURN * turns(3.0, t)
+        found = _answer(0.0, w * w, 3.0, t)
+        expected = (t * complex(math.cos(cycle), math.sin(cycle)) - math.sin(cycle) / w) / complex(0.0, 2.0 * w)
+        if w * t > 0.1:
+            assert complex(found[0], found[1]) == pytest.approx(expected, rel=1e-11)

@@ -11,21 +11,22 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from stickslip_sim.compare.drawn_motion import drawn_motion
 from stickslip_sim.compare.fresh import simulate_densely
+from stickslip_sim.compare.look import drawn_motion
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.types import Mode
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.plots import plot_run, side_by_side
-from stickslip_sim.plots.drawn_run import DrawnRun, TimeWindow, drawn_run, mode_shares
-from stickslip_sim.plots.run_panels import BINS, band, bin_edges
+from stickslip_sim.plots import paper_panels, plot_run
+from stickslip_sim.plots.friction_fits import FittedLine, MeasuredPoints, plot_friction_fits, plot_speeds
+from stickslip_sim.plots.run_panels import BINS, DrawnRun, TimeWindow, band, bin_edges, drawn_run, mode_shares
 from stickslip_sim.plots.style import legend_outside, thinned
-from stickslip_sim.rig.marks import Mark
 from stickslip_sim.runs import Run, simulate, simulate_events
-from stickslip_sim.runs.picture_samples import sampled
+from stickslip_sim.runs.picture import sampled
+from stickslip_sim.simulation.step_result import Mark
 
 EDGES: Numbers = np.linspace(0.0, 10.0, BINS + 1, dtype=np.float64)
 PNG = b'\x89PNG\r\n\x1a\n'
@@ -115,10 +116,10 @@ def test_a_pdf_has_letters_and_no_bitmaps_of_them(tmp_path: Path) -> None:
 
 def test_a_long_name_stays_clear_of_letters_and_of_the_edge(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shown: list[Figure] = []
-    monkeypatch.setattr(side_by_side, 'save', lambda figure, *paths: shown.append(figure))
+    monkeypatch.setattr(paper_panels, 'save', lambda figure, *paths: shown.append(figure))
     run = simulate_densely(load_scene('paper_fig7'), 2.0)
     names = 'axis_at_1.2_mm_s_' * 3, 'axis_at_1.2_mm_s_' * 12
-    side_by_side.plot_side_by_side(dict.fromkeys(names, drawn_motion(run)), tmp_path / 'a.png')
+    paper_panels.plot_side_by_side(dict.fromkeys(names, drawn_motion(run)), tmp_path / 'a.png')
     (figure,) = shown
     figure.savefig(BytesIO())
     boxes = {text.get_text(): text.get_window_extent() for panel in figure.axes for text in panel.texts}
@@ -230,3 +231,23 @@ def test_panels_make_room_for_a_legend_outside(place: str) -> None:
 def test_no_global_state_of_matplotlib() -> None:
     program = 'import sys, stickslip_sim.plots; assert "matplotlib.pyplot" not in sys.modules'
     subprocess.run([sys.executable, '-c', program], check=True, timeout=60)
+
+
+# The picture of a friction curve: its lines follow one direction of motion each.
+
+def test_residuals_of_two_directions_are_lines_of_their_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line through both went up and down at each speed."""
+    points = MeasuredPoints(np.repeat([0.001, 0.01, 0.1], 2), np.tile([0.11, 0.09], 3), np.tile([True, False], 3))
+    level = np.full(len(plot_speeds(points)), 0.1)
+    lines = [FittedLine(name, level, np.array([]), np.full(6, 0.1)) for name in ('best', 'other')]
+    drawn: list[list[float]] = []
+    plot = Axes.plot
+
+    def watched(panel: Axes, *given: object, **how: object) -> object:
+        if how.get('linewidth') == 0.6:
+            drawn.append(np.asarray(given[1]).tolist())
+        return plot(panel, *given, **how)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Axes, 'plot', watched)
+    plot_friction_fits(points, lines, 'curve.csv', tmp_path / 'curve.png')
+    assert drawn == [pytest.approx([10.0] * 3), pytest.approx([-10.0] * 3)] * 2

@@ -11,12 +11,11 @@ from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import Instant
-from stickslip_sim.realtime.command_slot import CommandSlot
+from stickslip_sim.realtime.commands import CommandSlot, Watchdog
 from stickslip_sim.realtime.pacing import Pacer, Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
-from stickslip_sim.realtime.watchdog import Watchdog
-from stickslip_sim.rig import Rig, StepResult
-from stickslip_sim.rig.settings import RigSettings
+from stickslip_sim.simulation import Rig, StepResult
+from stickslip_sim.simulation.rig import RigSettings
 from stickslip_sim.solvers import Solver, exact
 from tests.support.axes import COMPLIANT, make, paper_axis
 from tests.support.fake_clock import FakeClock

@@ -3,18 +3,17 @@
 """The watchdog: on the steady clock in real time, on simulation time elsewhere, and not for the loop's own faults."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.realtime.command_slot import CommandSlot
+from stickslip_sim.realtime.commands import CommandSlot, Watchdog
 from stickslip_sim.realtime.pacing import Pacer, StepClock, Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
-from stickslip_sim.realtime.watchdog import Watchdog
-from stickslip_sim.rig import RigEventKind, StepResult
+from stickslip_sim.simulation import RigEventKind, StepResult
 from tests.support.fake_clock import FakeClock
 from tests.support.rigs import make, rig_events_of
 from tests.support.waiting import wait_for
@@ -86,20 +85,6 @@ class TestSilence:
         assert watched.rig.counts.timed_out == 1
 
     @pytest.mark.parametrize('mode', MODES)
-    def test_of_just_the_timeout_is_none(self, mode: str) -> None:
-        acts = dict.fromkeys(range(9, 400, 100), command)
-        assert WatchedLoop(mode).run(409, acts) == []
-
-    @pytest.mark.parametrize('mode', MODES)
-    def test_of_a_step_more_is_one(self, mode: str) -> None:
-        acts = dict.fromkeys(range(9, 400, 101), command)
-        assert WatchedLoop(mode).run(380, acts) == [111, 212, 313]
-
-    @pytest.mark.parametrize('mode', MODES)
-    def test_begins_with_the_first_command(self, mode: str) -> None:
-        assert WatchedLoop(mode).run(400, {}) == []
-
-    @pytest.mark.parametrize('mode', MODES)
     def test_is_reported_again_only_after_a_command(self, mode: str) -> None:
         watched = WatchedLoop(mode)
         assert watched.run(900, {9: command, 599: command}) == [111, 701]
@@ -107,8 +92,14 @@ class TestSilence:
             RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
 
     @pytest.mark.parametrize('mode', MODES)
-    def test_off(self, mode: str) -> None:
-        assert WatchedLoop(mode, timeout=0.0).run(400, {9: command}) == []
+    @pytest.mark.parametrize(('commanded', 'timeout', 'silences'), [
+        (range(9, 400, 100), TIMEOUT, []),    # just the time-out
+        (range(9, 300, 101), TIMEOUT, [111, 212, 313]),    # a step more
+        ((), TIMEOUT, []), ((9,), 0.0, []),    # it begins with the first command, and is off
+    ])
+    def test_is_what_lasts_longer_than_the_timeout(self, mode: str, commanded: Iterable[int], timeout: float,
+                                                   silences: list[int]) -> None:
+        assert WatchedLoop(mode, timeout).run(380, dict.fromkeys(commanded, command)) == silences
 
     @pytest.mark.parametrize(('rate', 'timeout', 'step'), [(10.0, 0.3, 14), (20_000.0, 0.001, 31), (3.0, 1.0, 14)])
     def test_at_other_rates(self, rate: float, timeout: float, step: int) -> None:

@@ -1,22 +1,133 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Bags made to exhaust memory or time, or to lead out of their folder: refused in one line, and cheaply."""
+"""Bags that were damaged, or made to exhaust memory or time: refused in one line, and cheaply."""
 
 import struct
 import tracemalloc
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from random import Random
 
 import lz4.frame
 import pytest
 import zstandard
 from mcap.opcode import Opcode
+from mcap.writer import CompressionType
 
-from stickslip_sim.core.errors import RecordingError
-from stickslip_sim.recording import open_bag
+from stickslip_sim.core.errors import RecordingError, RecordingWarning
+from stickslip_sim.recording import RecordedMessage, open_bag, write_bag
+from stickslip_sim.recording.playback import Recording
+from tests.support.check_files import LIMITS, limits_file
 from tests.support.made_up_bags import Record, file_of
+from tests.support.recorded_runs import FACTS, events, samples
+from tests.support.rewritten_bags import rewritten
+from tests.support.tool import Capture, refused
+
+REPORTED = 'damaged: it was finished, but is no longer what was written; fetch the file again'
+
+
+def data_of(bag: Path) -> bytes:
+    return next(bag.glob('*.mcap')).read_bytes()
+
+
+def flipped(data: bytes, place: int, bit: int = 0) -> bytes:
+    """Return data with one bit turned."""
+    return data[:place] + bytes([data[place] ^ 1 << bit]) + data[place + 1:]
+
+
+@pytest.fixture
+def damaged(fig8_bag: Path, tmp_path: Path) -> Path:
+    data = data_of(fig8_bag)
+    path = tmp_path / 'damaged.mcap'
+    path.write_bytes(flipped(data, int(0.3 * len(data))))
+    return path
+
+
+@pytest.mark.parametrize('command', [
+    ['check', 'BAG', '--limits', 'LIMITS', '--json', 'OUT'], ['compare', 'BAG', '--out', 'OUT'],
+    ['export', 'BAG', '--csv', 'OUT'], ['export', 'BAG', '--csv', '-'], ['verify', 'BAG'],
+])
+def test_the_tool_refuses_it(command: list[str], damaged: Path, tmp_path: Path, capsys: Capture) -> None:
+    words: dict[str, str | Path] = {'BAG': damaged, 'LIMITS': limits_file(tmp_path, LIMITS), 'OUT': tmp_path / 'out'}
+    assert f'{damaged}: {REPORTED}' in refused(capsys, *(words.get(word, word) for word in command))
+    assert not [path for path in tmp_path.iterdir() if 'out' in path.name]
+
+
+@pytest.mark.parametrize('compression', list(CompressionType))
+def test_python_refuses_it(compression: CompressionType, fig8_bag: Path, tmp_path: Path) -> None:
+    path = rewritten(fig8_bag, tmp_path / 'other', compression=compression) / 'run_0.mcap'
+    data = path.read_bytes()
+    path.write_bytes(flipped(data, len(data) // 2))
+    with pytest.raises(RecordingError, match=REPORTED):
+        open_bag(path)
+
+
+def test_damaged_after_it_was_opened(fig8_bag: Path, damaged: Path, tmp_path: Path) -> None:
+    path = tmp_path / 'run.mcap'
+    path.write_bytes(data_of(fig8_bag))
+    run = open_bag(path)
+    damaged.replace(path)
+    with pytest.raises(RecordingError, match=REPORTED):
+        run.columns('slider_state')
+
+
+def test_a_damaged_file_without_an_end_is_read_up_to_the_damage(damaged: Path) -> None:
+    """It cannot be known: a computer that lost its power leaves such a file, too."""
+    damaged.write_bytes(damaged.read_bytes()[:-8])
+    with pytest.warns(RecordingWarning, match='has no end: cut off'):
+        run = open_bag(damaged)
+    assert not run.is_complete
+    steps = run.columns('slider_state')['step'].tolist()
+    assert steps == list(range(len(steps)))
+    assert 0.2 * 3001 < len(steps) < 0.4 * 3001
+
+
+def read(path: Path) -> list[RecordedMessage]:
+    return sorted(open_bag(path).messages())
+
+
+def played(path: Path) -> list[RecordedMessage]:
+    recording = Recording(path)
+    return sorted(recording.messages(recording.topics, recording.begin, recording.end))
+
+
+@pytest.fixture(scope='module')
+def small(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """A run of a few chunks."""
+    folder = tmp_path_factory.mktemp('bags') / 'run'
+    write_bag(folder, FACTS, samples(600), events(), {})
+    return data_of(folder)
+
+
+@pytest.mark.parametrize('how', [read, played])
+def test_no_bit_of_the_index_changes_what_is_read(how: Callable[[Path], list[RecordedMessage]], small: bytes,
+                                                  tmp_path: Path) -> None:
+    """It is refused, or the index is not used."""
+    data, path, stream = small, tmp_path / 'run.mcap', Random(5)
+    path.write_bytes(data)
+    whole = how(path)
+    (begin,) = struct.unpack_from('<Q', data, len(data) - 28)    # the footer says
+    outcomes = []
+    for _ in range(40):
+        path.write_bytes(flipped(data, stream.randrange(begin, len(data)), stream.randrange(8)))
+        outcomes.append(outcome(how, path))
+        assert outcomes[-1] in (whole, f'{path}: {REPORTED}')
+    assert whole in outcomes
+    path.write_bytes(flipped(data, data.rindex(b'/slider_state') + 1))    # no topic is renamed
+    assert how(path) == whole
+
+
+def outcome(how: Callable[[Path], list[RecordedMessage]], path: Path) -> list[RecordedMessage] | str:
+    """Return the messages, or why they are refused; anything else, a warning too, is an error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        try:
+            return how(path)
+        except RecordingError as error:
+            return str(error)
+
 
 HUGE = 1 << 30          # bytes
 MOST = 200 << 20        # that reading may take
@@ -75,29 +186,17 @@ def cheaply() -> Iterator[None]:
     assert peak < MOST, f'{peak >> 20} MiB'
 
 
-@pytest.mark.parametrize('compression', ['zstd', 'lz4'])
-def test_a_chunk_that_unpacks_to_far_more_than_it_says(compression: str, tmp_path: Path) -> None:
-    path = written(tmp_path, HEADER, chunk(compression, bomb(compression), 1000))
-    with cheaply(), pytest.raises(RecordingError, match='damaged'):
-        open_bag(path)
-
-
-def test_a_chunk_that_says_it_is_huge(tmp_path: Path) -> None:
-    path = written(tmp_path, HEADER, chunk('zstd', bomb('zstd'), HUGE))
-    with cheaply(), pytest.raises(RecordingError, match='a chunk of 1073741824 bytes; at most'):
-        open_bag(path)
-
-
-@pytest.mark.parametrize('length', [HUGE, 1 << 62, (1 << 64) - 1])
-def test_a_record_that_says_it_is_huge(length: int, tmp_path: Path) -> None:
-    path = written(tmp_path, HEADER, Record(Opcode.MESSAGE, MESSAGE, length))
-    with cheaply(), pytest.raises(RecordingError, match='damaged'):
-        open_bag(path)
-
-
-def test_attachments_without_end(tmp_path: Path) -> None:
-    path = written(tmp_path, HEADER, *(attachment(f'{k}', bytes(30 << 20)) for k in range(3)))
-    with cheaply(), pytest.raises(RecordingError, match='more than 64 MiB beside its messages'):
+@pytest.mark.parametrize(('reported', 'records'), [
+    ('damaged', lambda: [chunk('zstd', bomb('zstd'), 1000)]), ('damaged', lambda: [chunk('lz4', bomb('lz4'), 1000)]),
+    ('a chunk of 1073741824 bytes; at most', lambda: [chunk('zstd', bomb('zstd'), HUGE)]),
+    *(('damaged', lambda length=length: [Record(Opcode.MESSAGE, MESSAGE, length)])
+      for length in (HUGE, 1 << 62, (1 << 64) - 1)),
+    ('more than 64 MiB beside its messages', lambda: [attachment(f'{k}', bytes(30 << 20)) for k in range(3)]),
+], ids=['zstd', 'lz4', 'chunk', '1 GiB', '4 EiB', '16 EiB', 'attachments'])
+def test_what_unpacks_to_far_more_or_says_it_is_huge(reported: str, records: Callable[[], list[Record]], tmp_path: Path
+                                                     ) -> None:
+    path = written(tmp_path, HEADER, *records())
+    with cheaply(), pytest.raises(RecordingError, match=reported):
         open_bag(path)
 
 

@@ -1,7 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs on disk: what is written, and that other people's readers read it."""
+"""Runs on disk: what is written, where it goes, and that other people's readers read it."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -11,18 +12,27 @@ import yaml
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
+from rosbags.rosbag2 import StoragePlugin, Writer
 
+from stickslip_sim.bags.schemas import store_of
+from stickslip_sim.bags.topics import MODE_EVENT, SLIDER_STATE
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
-from stickslip_sim.core.types import Sample
+from stickslip_sim.core.types import EventKind, Mode, Sample
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import (
+    RECORDED,
+    BagWriter,
     messages,
     open_bag,
     open_run,
     receipt_file,
     recorded_topics,
     samples_of,
+    schema,
     write_bag,
 )
+from stickslip_sim.recording.messages import Packer
+from stickslip_sim.recording.recordings import Recordings, stamped_folder
 from tests.support.recorded_runs import FACTS, events, friction_force, mode_event, samples, slider_state
 
 COUNTS = {
@@ -67,69 +77,69 @@ def fields(message: Any, like: Values) -> Values:
     }
 
 
-def same(found: dict[str, list[Any]], folder: Path) -> None:
-    for topic, wanted in expected(folder).items():
+def of_rosbags(bag: Path) -> dict[str, list[Any]]:
+    found: dict[str, list[Any]] = {}
+    with AnyReader([bag]) as reader:
+        assert {name: topic.msgcount for name, topic in reader.topics.items()} == COUNTS
+        assert (reader.start_time, reader.duration) == (0, 119_000_001)
+        for connection, time_ns, data in reader.messages():
+            message = reader.deserialize(data, connection.msgtype)
+            stamp = message.header.stamp  # type: ignore[attr-defined]
+            assert time_ns == stamp.sec * 10**9 + stamp.nanosec
+            found.setdefault(connection.topic, []).append(message)
+    return found
+
+
+def of_mcap(bag: Path) -> dict[str, list[Any]]:
+    found: dict[str, list[Any]] = {}
+    with (bag / 'first_0.mcap').open('rb') as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for item in reader.iter_decoded_messages():
+            assert item.message.log_time == item.message.publish_time
+            assert item.message.sequence == getattr(item.decoded_message, 'step', item.message.sequence)
+            found.setdefault(item.channel.topic, []).append(item.decoded_message)
+    return found
+
+
+def of_ours(bag: Path) -> dict[str, list[Any]]:
+    run, found = open_bag(bag), dict[str, list[Any]]()
+    for message in run.messages():
+        found.setdefault(message.topic, []).append(run.decode(message))
+    return found
+
+
+@pytest.mark.parametrize('read', [of_rosbags, of_mcap, of_ours])
+def test_readers_find_what_was_written(bag: Path, read: Callable[[Path], dict[str, list[Any]]]) -> None:
+    found = read(bag)
+    for topic, wanted in expected(bag).items():
         assert [fields(message, like) for message, like in zip(found[topic], wanted, strict=True)] == wanted
 
 
-class TestReaders:
-    def test_rosbags(self, bag: Path) -> None:
-        found: dict[str, list[Any]] = {}
-        with AnyReader([bag]) as reader:
-            assert {name: topic.msgcount for name, topic in reader.topics.items()} == COUNTS
-            assert (reader.start_time, reader.duration) == (0, 119_000_001)
-            for connection, time_ns, data in reader.messages():
-                message = reader.deserialize(data, connection.msgtype)
-                stamp = message.header.stamp  # type: ignore[attr-defined]
-                assert time_ns == stamp.sec * 10**9 + stamp.nanosec
-                found.setdefault(connection.topic, []).append(message)
-        same(found, bag)
-
-    def test_mcap_ros2(self, bag: Path) -> None:
-        found: dict[str, list[Any]] = {}
-        with (bag / 'first_0.mcap').open('rb') as stream:
-            reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
-            for item in reader.iter_decoded_messages():
-                assert item.message.log_time == item.message.publish_time
-                assert item.message.sequence == getattr(item.decoded_message, 'step', item.message.sequence)
-                found.setdefault(item.channel.topic, []).append(item.decoded_message)
-        same(found, bag)
-
-    def test_ours(self, bag: Path) -> None:
+class TestOurReader:
+    def test_what_it_knows_of_the_run(self, bag: Path) -> None:
         run = open_bag(bag)
-        found: dict[str, list[Any]] = {}
-        for message in run.messages():
-            found.setdefault(message.topic, []).append(run.decode(message))
-        same(found, bag)
         assert run.is_complete
         assert run.counts == COUNTS
         assert run.receipt == {'periods': 3, 'end': 'inf'}
         assert run.attachments['scene.yaml'].decode() == FACTS.scene_text
         assert run.metadata['stickslip'].items() >= {'scene': 'made_up', 'seed': '7', 'rate': '1000.0'}.items()
         assert run.metadata['stickslip']['hot_path'] in ('compiled', 'plain python')
+        steps = {topic: [message.sequence for message in run.messages([topic])]    # the first that a command acts on
+                 for topic in ('/drive_velocity', '/external_force')}
+        assert steps == {'/drive_velocity': [1, 51], '/external_force': [1, 21, 31]}
 
     def test_columns(self, bag: Path) -> None:
-        columns = open_bag(bag).columns('/slider_state')
+        run = open_bag(bag)
+        columns, of_text = run.columns('/slider_state'), run.columns('/run_info')
         wanted = [slider_state(k, sample, 0) for k, sample in enumerate(samples(120))]
         for name in ('step', 'time', 'position', 'drive_force', 'rest_time', 'mode', 'direction'):
             assert columns[name].tolist() == [values[name] for values in wanted]
         assert columns['log_time'].tolist() == [k * 1_000_000 for k in range(120)]
         assert columns['sequence'].tolist() == list(range(120))
-        assert open_bag(bag).columns('/timing')['lateness_max'].size == 0
-
-    def test_columns_of_a_message_with_text(self, bag: Path) -> None:
-        columns = open_bag(bag).columns('/run_info')
-        assert (columns['seed'].tolist(), columns['rate'].tolist()) == ([7], [1000.0])
-
-    def test_columns_of_nothing(self, bag: Path) -> None:
+        assert run.columns('/timing')['lateness_max'].size == 0
+        assert (of_text['seed'].tolist(), of_text['rate'].tolist()) == ([7], [1000.0])
         with pytest.raises(RecordingError, match=r'no topic /nothing; there are /slider_state, '):
-            open_bag(bag).columns('/nothing')
-
-    def test_commands_bear_the_first_step_they_act_on(self, bag: Path) -> None:
-        run = open_bag(bag)
-        assert [m.sequence for m in run.messages(['/drive_velocity'])] == [1, 51]
-        assert [m.sequence for m in run.messages(['/external_force'])] == [1, 21, 31]
-
+            run.columns('/nothing')
 
 class TestLayout:
     def test_metadata(self, bag: Path) -> None:
@@ -191,3 +201,67 @@ class TestLayout:
         writer.write(0, b'\0\1\0\0', 1, 1, 2**32 + 5)
         writer.close()
         assert [message.sequence for message in open_bag(tmp_path / 'long').messages()] == [5]
+
+
+def with_events(folder: Path, namespace: str, **changes: Any) -> Path:
+    """Write the transitions of the made-up run, with other fields."""
+    packer = Packer(MODE_EVENT)
+    writer = BagWriter(folder, recorded_topics(namespace), {}, {})
+    for event in events():
+        writer.write(RECORDED.index(MODE_EVENT), packer.pack(0, 1, event._replace(**changes)), 0, 0, 1)
+    writer.close()
+    return folder
+
+
+def test_transitions_come_back_as_they_were(tmp_path: Path) -> None:
+    found = open_bag(with_events(tmp_path / 'run', '/cell/press')).events
+    for event, expected in zip(found, events(), strict=True):
+        assert event.kind is expected.kind
+        for name in set(event._fields) - {'drive_position'}:
+            assert getattr(event, name) == getattr(expected, name), name
+
+
+@pytest.mark.parametrize('changes', [{'kind': len(EventKind)}, {'mode': len(Mode)}])
+def test_transitions_of_unknown_kinds(changes: dict[str, int], tmp_path: Path) -> None:
+    with pytest.raises(RecordingError, match='unknown kinds; recorded by another version'):
+        _ = open_bag(with_events(tmp_path / 'run', '/', **changes)).events
+
+
+def test_messages_of_another_version(tmp_path: Path) -> None:
+    text = schema(SLIDER_STATE.type).text.replace('float64 drive_position', 'float64 spindle_position')
+    with Writer(tmp_path / 'old', version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        writer.add_connection('/slider_state', SLIDER_STATE.type, typestore=store_of({SLIDER_STATE.type: text}))
+    run = open_bag(tmp_path / 'old')
+    assert run.columns_of(SLIDER_STATE, ['time'])['time'].size == 0
+    with pytest.raises(RecordingError, match='/slider_state has no drive_position; recorded by another version'):
+        run.columns_of(SLIDER_STATE, ['time', 'drive_position'])
+
+
+@pytest.mark.parametrize('ending', ['/', '//', '/.'])
+def test_a_folder_as_a_shell_completes_it(tmp_path: Path, ending: str) -> None:
+    scene = load_scene('paper_fig8', {'record.folder': f'{tmp_path}/runs/first{ending}'})
+    recordings = Recordings('/', scene)
+    recordings.begin(scene)
+    recordings.end({})
+    assert open_bag(tmp_path / 'runs' / 'first').is_complete
+
+
+def test_no_message_definition_is_read_while_the_axis_runs(tmp_path: Path) -> None:
+    """It takes longer than a step."""
+    scene = load_scene('paper_fig8', {'record.folder': f'{tmp_path}/runs/first'})
+    recordings = Recordings('/', scene)
+    schema.cache_clear()
+    recordings.prepare()
+    read = schema.cache_info().misses
+    recordings.begin(scene)
+    recordings.end({})
+    assert schema.cache_info().misses == read > 0
+
+
+def test_folders_of_one_second_have_numbers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where a link to nowhere has the name."""
+    monkeypatch.setattr('time.gmtime', lambda: (2026, 3, 1, 12, 0, 7, 6, 60, 0))
+    (tmp_path / 'axis_20260301T120007Z').mkdir()
+    (tmp_path / 'axis_20260301T120007Z_2').symlink_to(tmp_path / 'nowhere')
+    assert stamped_folder(tmp_path, 'axis') == tmp_path / 'axis_20260301T120007Z_3'
+    assert stamped_folder(tmp_path, 'mill') == tmp_path / 'mill_20260301T120007Z'

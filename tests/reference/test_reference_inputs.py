@@ -24,6 +24,7 @@ from tests.support.axes import COMPLIANT, RIGID, of_kind, paper_axis
 mpmath = pytest.importorskip('mpmath')
 from mpmath import mpf  # noqa: E402
 
+from stickslip_sim.reference.exact_run import split  # noqa: E402
 from tests.reference.inclusion import violations  # noqa: E402
 from tests.reference.scenes import Parameters, paper  # noqa: E402
 from tests.support.stored_objects import exact_run  # noqa: E402
@@ -245,6 +246,11 @@ def test_events_are_the_nearest_floats() -> None:
         assert event.friction_force == float(as_fraction(exact.friction_force))
         assert 0.0 <= event.fraction < 1.0
     assert run.final.drive_position == pytest.approx(0.105, rel=1e-15)
+
+
+def test_a_time_that_rounds_to_a_whole_second_is_that_second() -> None:
+    with mpmath.workdps(40):
+        assert split(mpf(3) - mpf(10) ** -30) == (3.0, 0.0)
 
 
 def as_fraction(number: mpf) -> Fraction:

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Mode, Sample
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.rig import Measured, StepResult
-from stickslip_sim.rig.encoder import Encoder, EncoderSettings
+from stickslip_sim.simulation import Measured, StepResult
+from stickslip_sim.simulation.encoder import Encoder, EncoderSettings
 from tests.support.rigs import RATE, Script, inject, make, run
 
 MICRON = 1e-6

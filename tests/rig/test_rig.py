@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The rig as a whole: a function of scene, seed and orders by step, and of nothing else."""
+"""The rig as a whole: a function of scene, seed and orders by step, and of nothing else; and the marks of its run."""
 
 import math
 from collections.abc import Sequence
@@ -16,15 +16,15 @@ from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.realtime.command_slot import CommandSlot
+from stickslip_sim.realtime.commands import CommandSlot, Watchdog
 from stickslip_sim.realtime.pacing import Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
-from stickslip_sim.realtime.watchdog import Watchdog
-from stickslip_sim.rig import Fault, Rig, StepResult
-from stickslip_sim.rig.drive import DriveLimits
-from stickslip_sim.rig.encoder import EncoderSettings
-from stickslip_sim.rig.settings import RigSettings
+from stickslip_sim.simulation import Fault, Rig, RigEventKind, StepResult
+from stickslip_sim.simulation.drive import DriveLimits
+from stickslip_sim.simulation.encoder import EncoderSettings
+from stickslip_sim.simulation.rig import RigSettings
 from stickslip_sim.simulation.simulator import Simulator
+from stickslip_sim.simulation.step_result import Mark, TimedRigEvent, marks_of_events, marks_of_faults
 from tests.support.rigs import (
     AXIS,
     STUCK,
@@ -249,3 +249,42 @@ class TestFailure:
             run(rig, 100, {100: [velocity(1.7e308)]})
         rig.reset()
         assert bits(run(rig, 100)) == bits(first)
+
+
+INJECTED, BEGIN, END, CLEARED, TIMEOUT, RESUMED = (
+    RigEventKind.FAULT_INJECTED, RigEventKind.FAULT_BEGIN, RigEventKind.FAULT_END, RigEventKind.FAULT_CLEARED,
+    RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED)
+
+
+AGAIN = (3.5, RESUMED, 'velocity', '')
+
+
+@pytest.mark.parametrize(('events', 'expected'), [
+    ([(1.0, INJECTED, 'a', 'force_pulse'), (2.0, BEGIN, 'a', 'force_pulse'), (3.0, END, 'a', 'force_pulse')],
+     [Mark(2.0, 3.0, 'force_pulse')]),
+    ([(2.0, BEGIN, 'a', 'drive_freeze'), (2.5, BEGIN, 'b', 'command_loss'), (4.0, CLEARED, 'a', 'drive_freeze')],
+     [Mark(2.0, 4.0, 'drive_freeze'), Mark(2.5, 10.0, 'command_loss')]),    # cut short, and going on
+    ([(1.0, INJECTED, 'a', 'force_pulse'), (1.5, CLEARED, 'a', 'force_pulse')], []),    # cleared before it began
+    ([(3.0, END, 'a', 'force_pulse')], [Mark(0.5, 3.0, 'force_pulse')]),    # from before the recording
+    ([(1.0, TIMEOUT, 'velocity', ''), (2.0, RESUMED, 'velocity', '')], [Mark(1.0, 2.0, 'time-out')]),
+    ([(1.0, TIMEOUT, 'velocity', ''), (3.0, CLEARED, '', '')], [Mark(1.0, 3.0, 'time-out')]),
+    ([(1.0, TIMEOUT, 'velocity', '')], [Mark(1.0, 10.0, 'time-out')]),
+    ([(1.0, TIMEOUT, 'velocity', ''), (3.0, CLEARED, '', ''), AGAIN], [Mark(1.0, 3.0, 'time-out')]),    # no second one
+    ([(3.0, CLEARED, '', ''), AGAIN], [Mark(0.5, 3.0, 'time-out')]), ([AGAIN], [Mark(0.5, 3.5, 'time-out')]),
+])
+def test_marks(events: list[tuple[float, RigEventKind, str, str]], expected: list[Mark]) -> None:
+    assert marks_of_events([TimedRigEvent(*event, 1) for event in events], 0.5, 10.0) == expected
+
+
+def test_what_was_not_taken_is_an_instant_with_its_number() -> None:
+    events = [TimedRigEvent(1.0, RigEventKind.COMMAND_REFUSED, 'velocity', '', 12),
+              TimedRigEvent(2.0, RigEventKind.COMMAND_LIMITED, 'velocity', '', 0)]
+    found = marks_of_events(events, 0.0, 10.0)
+    assert found == [Mark(1.0, 1.0, 'refused', 12), Mark(2.0, 2.0, 'limited', 1)]
+    assert not any(mark.is_span for mark in found)
+
+
+def test_the_faults_of_a_scene_end_with_the_run() -> None:
+    faults = [Fault('a', 'force_pulse', 1.0, 2.0, 5.0), Fault('b', 'drive_freeze', 3.0, float('inf'), 0.0),
+              Fault('c', 'drive_freeze', 8.0, 1.0, 0.0)]
+    assert marks_of_faults(faults, 5.0) == [Mark(1.0, 3.0, 'force_pulse'), Mark(3.0, 5.0, 'drive_freeze')]

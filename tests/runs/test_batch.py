@@ -11,15 +11,18 @@ import numpy as np
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
+from stickslip_sim.axis.rows import EventRow
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Event, EventKind, Mode
+from stickslip_sim.figures.cycles import Summary, summary
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
 from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.friction.shapes import Decay
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs.batch import BatchFigures, run_batch
 from stickslip_sim.runs.batch_columns import BATCH_COLUMNS
-from stickslip_sim.simulation.cycles import Summary, summary
+from stickslip_sim.solvers.exact.axis_figures import AxisFigures
+from stickslip_sim.solvers.exact.many_axes import book
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis
 
@@ -142,6 +145,14 @@ def test_the_threads_change_no_bit(threads: int) -> None:
 
 def test_plain_python_gives_the_same_bits(in_a_process: Program) -> None:
     assert in_a_process(PROGRAM, compiled=False) == in_a_process(PROGRAM, compiled=True)
+
+
+def test_pauses_count_in_the_second_half_alone() -> None:
+    figures = AxisFigures()
+    for second in (1.0, 2.0, 5.0, 7.0, 8.0):   # each slip lasts half a second
+        book(figures, [], 0, EventRow(second, 0.0, EventKind.BREAKAWAY, Mode.ACCELERATING), 6.0)
+        book(figures, [], 0, EventRow(second, 0.5, EventKind.STICK, Mode.STICK), 6.0)
+    assert (figures.sticks, figures.longest_pause) == (4.0, 2.0)
 
 
 def test_a_number_stands_for_all_axes() -> None:

@@ -19,8 +19,7 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.reference import simulate
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.runs.error_estimate import error_estimate
-from stickslip_sim.runs.perturbation import ROUNDING_UNIT, perturbed
+from stickslip_sim.runs.error_estimate import ROUNDING_UNIT, error_estimate, perturbed
 from stickslip_sim.scene import Scene, SolverSettings
 from tests.support.stored_objects import axis_of, profile_of
 from tests.support.stored_runs import stored

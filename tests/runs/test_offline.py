@@ -9,10 +9,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from stickslip_sim.core.energy import EnergyBalance
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.core.types import Event, EventKind, Sample
+from stickslip_sim.core.types import EnergyBalance, Event, EventKind, Sample
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.report.quantity import quantities, quantity
 from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
 from stickslip_sim.runs.simulated import MAX_SAMPLES, check_run_times
 
@@ -145,3 +145,49 @@ def test_too_many_events_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr('stickslip_sim.runs.simulated.MAX_EVENTS', 10)
     with pytest.raises(InputError, match='at most 10 events'):
         simulate_events(load_scene('paper_fig8'), 60.0)
+
+
+# The faults of a scene act offline as they do step by step.
+
+FAULTS = {'faults.ids': ['dry', 'knock', 'stop'], 'faults.kinds': ['friction_scale', 'force_pulse', 'drive_freeze'],
+          'faults.starts': [0.3, 0.7004, 1.2],
+          'faults.durations': [0.5, 0.0125, 0.25], 'faults.values': [1.5, 900.0, 0.0]}
+
+
+@pytest.mark.parametrize('name', ['paper_fig7', 'positioning', 'cutting_force'])
+def test_a_run_from_event_to_event_is_that_of_the_steps(name: str) -> None:
+    scene = load_scene(name, {**FAULTS, 'time.rate': 200.0})
+    run = simulate(scene, 2.0, 0.005)
+    rig = scene.make_rig()
+    results = [rig.make_step() for _ in range(401)]
+    assert run.events == [event for result in results for event in result.events]
+    assert list(run.sample_rows()) == [result.sample for result in results]
+    assert run.events != simulate_events(load_scene(name, {'time.rate': 200.0}), 2.0).events
+
+
+# Figures in words: numbers that are read beside each other have one unit.
+
+def test_a_quantity_has_the_prefix_that_suits_it() -> None:
+    found = [quantity(value, 's', 4) for value in (0.9723, 1.137, 3600.0, 0.0)]
+    assert found == ['972.3 ms', '1.137 s', '3600 s', '0 s']
+
+
+def test_kilograms_have_a_prefix_already() -> None:
+    assert [quantity(value, 'kg', 4) for value in (1553.2, 34.0, 0.25, 2e-6)] == ['1553 kg', '34 kg', '250 g', '2 mg']
+    assert quantities([0.4, 0.5, 1.2], 'kg', 4) == ['400 g', '500 g', '1200 g']
+    assert quantities([900.0, 1000.0, 1100.0], 'kg', 4) == ['900 kg', '1000 kg', '1100 kg']
+
+
+def test_few_digits_are_no_power_of_ten() -> None:
+    found = [quantity(value, 'N s/m', 2) for value in (4.6e-4, 985.0, 0.0312)]
+    assert found == ['460 µN s/m', '980 N s/m', '31 mN s/m']
+
+
+def test_quantities_have_that_of_the_one_in_the_middle() -> None:
+    assert quantities([0.6631, 0.9723, 1.4991], 's', 4) == ['663.1 ms', '972.3 ms', '1499 ms']
+    assert quantities([0.0, 0.2, 0.3], 'm', 4) == ['0 mm', '200 mm', '300 mm']
+    assert quantities([0.1, 0.25], '', 4) == ['0.1', '0.25']
+
+
+def test_quantities_too_far_apart_have_one_each() -> None:
+    assert quantities([0.001, 0.5, 100.0], 's', 4) == ['1 ms', '500 ms', '100 s']

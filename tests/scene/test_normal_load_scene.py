@@ -15,7 +15,7 @@ from stickslip_sim.core.input_profile import InputProfile, Sinusoid, table
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate
-from stickslip_sim.runs.normal_force import LOAD_COLUMN
+from stickslip_sim.runs.run import LOAD_COLUMN
 from stickslip_sim.scene import Scene, parse_scene
 from stickslip_sim.study.critical import critical_of, default_range
 from stickslip_sim.study.points import works_in_batches

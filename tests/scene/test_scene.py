@@ -11,10 +11,8 @@ import pytest
 from stickslip_sim.axis import CompliantContact, RigidContact
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import PARAMETERS, parse_override, scene_from_values, scene_names
-from stickslip_sim.scene.document import document
 from stickslip_sim.scene.load import read_scene
 from stickslip_sim.scene.schema import BY_NAME
-from tests.support.repository import ROOT
 from tests.support.scene_files import refusal, write
 
 
@@ -162,10 +160,6 @@ def test_only_numbers_of_the_axis_and_commands_and_the_next_folder_are_live() ->
     assert BY_NAME['record.folder'].live
     assert {name.partition('.')[0] for name in live} == {'axis', 'contact', 'friction', 'command'}
     assert {BY_NAME[name].type for name in live} == {'double', 'double_array'}
-
-
-def test_the_reference_is_up_to_date() -> None:
-    assert (ROOT / 'docs' / 'scene.md').read_text(encoding='utf-8') == document()
 
 
 @pytest.mark.parametrize(('law', 'more'), [

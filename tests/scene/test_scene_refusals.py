@@ -8,9 +8,9 @@ import pathlib
 
 import pytest
 
-from stickslip_sim.config.ros_yaml import SIZE_LIMIT, plain_value, read_yaml
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import PARAMETERS, Parameter, scene_from_values
+from stickslip_sim.scene.ros_yaml import SIZE_LIMIT, plain_value, read_yaml
 from tests.support.scene_files import refusal, write
 
 EXPONENTIAL = 'law: exponential, initial: 0.1, limit: 0.05, stribeck_velocity: 0.01'

@@ -3,12 +3,19 @@
 """Every shipped scene shows what its first comment says."""
 
 import itertools
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+from stickslip_sim.advise.parts import friction_parts
+from stickslip_sim.compare.characteristics import characteristics_beside
 from stickslip_sim.core.types import Event, EventKind, Mode, Sample
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
+from stickslip_sim.scene import changed, scene_names
 from stickslip_sim.simulation.simulator import Simulator
+from stickslip_sim.study import EvenGrid, Study, variation
 from tests.support.axes import instant
 
 
@@ -100,3 +107,121 @@ def test_cutting_force_ties_the_stick_slip_to_the_cut() -> None:
     assert last_cycle(events)[1] == pytest.approx(1.25e-4, rel=1e-9)
     released = of(events, EventKind.BREAKAWAY)[-1].time % 0.0625
     assert 0.03125 < released < 0.0625
+
+
+# A part that a scene leaves out changes nothing: the motion is that of the part at its neutral value, to the bit.
+
+DURATION, PERIOD = 3.0, 0.01   # s
+CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.2}
+
+
+def with_values(name: str, changes: dict[str, object]) -> SimulatedRun:
+    return simulate(load_scene(name, changes), DURATION, PERIOD)
+
+
+def assert_same(a: SimulatedRun, b: SimulatedRun) -> None:
+    assert len(a.events) > 5
+    assert a.events == b.events
+    assert all((a.samples[name] == b.samples[name]).all() for name in a.samples)
+
+
+@pytest.mark.parametrize('neutral', [
+    {'force.course': 'constant', 'force.constant': 0.0},
+    {'force.course': 'sine', 'force.amplitude': 0.0, 'force.frequency': 16.0},
+    {'drive.amplitudes': [0.0, 0.0], 'drive.frequencies': [3.0, 700.0]},
+    {'force.amplitudes': [0.0], 'force.frequencies': [20.0]},
+    {'friction.kinetic.end_slope': 0.0},
+    {'friction.scale': 1.0},
+    {'encoder.resolution': 0.0},
+    {'command.timeout': 0.0},
+    {'record.enabled': False},
+    {'seed': 7},
+    {'time.rate': 250.0},
+])
+@pytest.mark.parametrize('name', ['paper_fig7', 'paper_fig8'])
+def test_a_neutral_value_is_as_good_as_none(name: str, neutral: dict[str, object]) -> None:
+    assert_same(with_values(name, neutral), with_values(name, {}))
+
+
+def test_dampers_of_nothing_are_none(tmp_path: Path) -> None:
+    given = changed(load_scene('paper_fig8'), {'contact.damping': 0.0, 'scene': 'mine'})
+    path = tmp_path / 'scene.yaml'
+    path.write_text('\n'.join(line for line in given.text.splitlines() if 'damping: 0.0' not in line))
+    left_out = load_scene(str(path))
+    assert_same(simulate(given, DURATION, PERIOD), simulate(left_out, DURATION, PERIOD))
+
+
+@pytest.mark.parametrize('law', ['exponential', 'kato', 'hyperbolic', 'logarithmic'])
+@pytest.mark.parametrize('name', ['paper_fig7', 'paper_fig8', 'paper_fig4_falling'])
+def test_growth_to_where_it_begins_is_the_constant_law_for_any_time(name: str, law: str) -> None:
+    constant = with_values(name, {**CONSTANT, 'initial.rest_time': 1.0})
+    for time_constant in (1e-3, 50.0):
+        growing = {'friction.static.law': law, 'friction.static.initial': 0.2, 'friction.static.limit': 0.2,
+                   'friction.static.time_constant': time_constant, 'initial.rest_time': 1.0}
+        exponent = {'friction.static.exponent': 0.7} if law == 'kato' else {}
+        assert_same(with_values(name, {**growing, **exponent}), constant)
+
+
+def test_branches_that_begin_together_are_one_curve() -> None:
+    """With mu_s = mu_k at rest a rigid contact breaks away without an excess."""
+    equal = {'friction.static.law': 'constant', 'friction.static.initial': 0.12, 'drive.course': 'sine',
+             'drive.amplitude': 0.01, 'drive.frequency': 1.0}
+    assert_same(with_values('paper_fig7', equal),
+                with_values('paper_fig7', {**equal, 'friction.acceleration_dependence': False}))
+
+
+def test_a_breakpoint_on_the_line_between_its_neighbours_is_an_event_and_no_more() -> None:
+    plain = with_values('paper_fig4_falling', {})
+    knotted = with_values('paper_fig4_falling', {'friction.kinetic.velocities': [0.0, 0.0175, 0.035],
+                                                 'friction.kinetic.coefficients': [0.12, 0.085, 0.05]})
+    moves = [e for e in plain.events if e.kind != EventKind.KNOT]
+    again = [e for e in knotted.events if e.kind != EventKind.KNOT]
+    assert [(e.kind, e.mode, e.direction) for e in again] == [(e.kind, e.mode, e.direction) for e in moves]
+    assert max(abs(a.time - b.time) for a, b in zip(again, moves)) < 1e-13
+    slips = plain.summary.events[EventKind.BREAKAWAY]
+    extra = knotted.summary.events[EventKind.KNOT] - plain.summary.events[EventKind.KNOT]
+    assert extra == 2 * slips   # on the way up and on the way down
+
+
+# One factor on all of friction: in a scene, in a study, and in the scenes that advise and compare derive.
+
+SCALED = {'friction.scale': 1.25}
+
+
+def test_a_scene_without_it_says_nothing_of_it() -> None:
+    assert all('friction.scale' not in load_scene(name).values for name in scene_names())
+
+
+@pytest.mark.parametrize('name', ['paper_fig7', 'paper_fig8', 'stribeck'])
+def test_all_coefficients_are_scaled_as_by_the_fault(name: str) -> None:
+    fault = {'faults.ids': ['dry'], 'faults.kinds': ['friction_scale'], 'faults.starts': [0.0],
+             'faults.durations': [1e6], 'faults.values': [1.25]}
+    scaled, faulty = (simulate_events(load_scene(name, changes), 3.0) for changes in (SCALED, fault))
+    assert len(scaled.events) > 5
+    assert [event.kind for event in scaled.events] == [event.kind for event in faulty.events]
+    assert [event.time for event in scaled.events] == pytest.approx([event.time for event in faulty.events], rel=1e-9)
+
+
+def test_more_friction_is_as_a_heavier_load() -> None:
+    """Both times a power of two, so that the products are the same doubles."""
+    scaled, loaded = (simulate_events(load_scene('paper_fig8', change), 3.0).events for change in (
+        {'friction.scale': 2.0}, {'axis.normal_force': 2.0 * 3432.3275}))
+    assert [event.time for event in scaled] == pytest.approx([event.time for event in loaded], rel=1e-12)
+
+
+def test_a_study_varies_it_beside_static_friction() -> None:
+    study = Study(load_scene('paper_fig8').values, EvenGrid((variation('friction.scale=0.8:1.2:3'),
+                                                          variation('friction.static.limit=0.2:0.28:3'))))
+    found = study.figures(0, study.count).break_away_force
+    alone = [simulate_events(study.scene_at(point), 20.0).summary.last for point in study.points(0, study.count)]
+    assert found == pytest.approx([cycle.break_away_force for cycle in alone if cycle], rel=1e-6)
+    assert len(np.unique(found)) == study.count
+
+
+def test_scenes_made_from_a_scaled_one_are_scaled_once() -> None:
+    scene = changed(load_scene('paper_fig8'), SCALED)
+    at_rest = scene.axis.friction.kinetic.coefficients[0]
+    assert characteristics_beside(scene)['constant kinetic friction'].axis.friction.kinetic.coefficients == (at_rest,)
+    part = next(part for part in friction_parts(scene) if part.name == 'speed dependence of mu_k')
+    flat = changed(scene, part.variants[0].changes(dict(scene.values)))
+    assert set(flat.axis.friction.kinetic.coefficients) == {at_rest}

@@ -15,6 +15,7 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.reference import simulate
 from stickslip_sim.scene import Scene, changed
+from stickslip_sim.sensitivity.moved_number import STENCILS, Stencil
 from stickslip_sim.sensitivity.sensitivities import Sensitivities, sensitivities
 from stickslip_sim.study.in_memory import sweep
 
@@ -66,6 +67,14 @@ def test_events_of_constant_friction_are_those_of_the_closed_form(figure: str, f
         assert found.errors[0, k] <= 1e-7 * abs(exact) + 1e-9 / given[key]
 
 
+@pytest.mark.parametrize('stencil', STENCILS, ids=lambda stencil: str(stencil.side))
+def test_the_differences_of_a_cubic_are_exact(stencil: Stencil) -> None:
+    values = np.array([(2.0 + 0.5 * offset) ** 3 for offset in stencil.offsets])
+    derivative, error = stencil.derivative(values, 0.5, 2.0)
+    assert float(derivative) == pytest.approx(12.0, rel=1e-14)
+    assert 0.01 < float(error) < 1.0   # that of the better of the two before
+
+
 def test_the_tenth_arrest_of_the_paper() -> None:
     """Ten times the period to the logarithm of the last static coefficient, by plain differences of any step."""
     for step in (1e-4, 1e-5, 1e-6):
@@ -83,7 +92,7 @@ def test_the_reference_has_the_same_derivatives() -> None:
         step = 1e-6 * float(found.numbers[k])
         up, down = (_by_the_reference(scene, name, float(found.numbers[k]) + sign * step) for sign in (1.0, -1.0))
         brute = (up - down) / (2.0 * step)
-        assert found.derivatives[:, k] == pytest.approx(brute, rel=1e-6)
+        assert found.derivatives[:, k] == pytest.approx(brute, rel=1e-6, abs=0.0)
 
 
 def _by_the_reference(scene: Scene, name: str, value: float) -> NDArray[np.float64]:
@@ -237,6 +246,14 @@ def test_the_multiplier_is_how_fast_cycles_approach(scene: str) -> None:
     found: Sensitivities = sensitivities(scene, [f'breakaway.{k}.drive_force' for k in range(3, 6)], ['axis.mass'])
     first, second, third = found.values
     assert found.multiplier.value == pytest.approx((third - second) / (second - first), rel=0.2, abs=1e-6)
+
+
+def test_a_damper_on_the_slideway_has_the_multiplier_of_one_on_the_drive_and_a_force() -> None:
+    """−h ẋ = h (v − ẋ) − h v."""
+    on_slideway = {'axis.damper': 'slideway', 'force.constant': 4000.0 * 0.002}
+    drive, slideway = (sensitivities(changed(load_scene('paper_fig7'), changes), ['period'], ['axis.mass']).multiplier
+                       for changes in ({}, on_slideway))
+    assert slideway.value == pytest.approx(drive.value, rel=1e-6)
 
 
 @pytest.mark.parametrize(('scene', 'words'), [('fast_feed', 'no limit cycle'), ('cutting_force', 'not constant')])

@@ -19,8 +19,7 @@ from stickslip_sim.study import Variation
 from stickslip_sim.study.answer_changes import FAILED, NO, OPEN, YES, Answers, Doubt, Findings, find_transitions
 from stickslip_sim.study.critical import Critical, critical_of, default_range
 from stickslip_sim.study.points import scene_at
-from stickslip_sim.study.table_facts import table_fact
-from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed
+from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed, table_fact
 from tests.support.axes import instant
 from tests.support.repository import ROOT
 

@@ -13,16 +13,14 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.arrays import Numbers
+from stickslip_sim.figures.cycles import cycle_figures
+from stickslip_sim.figures.point_figures import Runs
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.simulation.cycles import cycle_figures
 from stickslip_sim.study import EvenGrid, Study, variation
-from stickslip_sim.study.bifurcation import bifurcation
-from stickslip_sim.study.borders import borders
-from stickslip_sim.study.description import study_of
+from stickslip_sim.study.diagrams import bifurcation, borders, ending_at
 from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, SIDECAR, Folder
-from stickslip_sim.study.picks import ending_at
-from stickslip_sim.study.point_figures import Runs
+from stickslip_sim.study.study import study_of
 from stickslip_sim.study.table import read_columns
 from tests.support.tool import Capture, refused
 
@@ -127,7 +125,7 @@ def test_the_cycles_of_a_diagram_are_the_last_of_the_whole_run(over: str, monkey
         cycles = cycle_figures(simulate_events(study.scene_at(point), float(figures.duration[k])).events)
         expected += [(point[0], cycle.break_away_drive_force, cycle.arrest_drive_force, cycle.jump)
                      for cycle in cycles[len(cycles) // 2:][-40:]]
-    monkeypatch.setattr('stickslip_sim.study.bifurcation.simulate_events', None)
+    monkeypatch.setattr('stickslip_sim.study.diagrams.simulate_events', None)
     assert bifurcation(study, figures).cycles.tolist() == [list(row) for row in expected]
 
 

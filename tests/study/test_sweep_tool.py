@@ -16,10 +16,10 @@ import numpy as np
 import pytest
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.figures.point_figures import FIGURES
 from stickslip_sim.study import Study, resources, table
-from stickslip_sim.study.description import study_of
 from stickslip_sim.study.folder import PARQUET, PARTIAL, POINTS_TABLE, SIDECAR, Folder
-from stickslip_sim.study.point_figures import FIGURES
+from stickslip_sim.study.study import study_of
 from stickslip_sim.study.table import read_columns, title_line
 from tests.support.tool import Capture, refused, restore_interrupt
 

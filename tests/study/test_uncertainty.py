@@ -11,12 +11,11 @@ from scipy import stats
 
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
+from stickslip_sim.figures.point_figures import FIGURES, Motion
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.study import Distribution, Saltelli, Study
-from stickslip_sim.study.description import description, study_of
-from stickslip_sim.study.point_figures import FIGURES, Motion
-from stickslip_sim.study.uncertain_file import uncertain_of
-from stickslip_sim.study.uncertainty import PERCENTS, sobol_indices, uncertainty_of
+from stickslip_sim.study.study import description, study_of
+from stickslip_sim.study.uncertainty import PERCENTS, sobol_indices, uncertain_of, uncertainty_of
 
 SHARES: Numbers = np.arange(101) / 100.0
 STATIC, KINETIC, NORMAL = 0.24, 0.12, 3432.3275

@@ -3,8 +3,8 @@
 """Simulators that keep the account of energy."""
 
 from stickslip_sim.axis import Axis, CompliantContact, InitialState
-from stickslip_sim.core.energy import EnergyBalance
 from stickslip_sim.core.input_profile import InputProfile, constant
+from stickslip_sim.core.types import EnergyBalance
 from stickslip_sim.simulation.simulator import Simulator
 
 UNDAMPED = CompliantContact(5e6, 0.0)

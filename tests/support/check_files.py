@@ -7,16 +7,16 @@ import shutil
 from collections.abc import Mapping
 from pathlib import Path
 
+from stickslip_sim.bags.topics import DRIVE_VELOCITY, RECORDED, SLIDER_STATE
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.outcomes import LimitOutcome, outcomes_of
-from stickslip_sim.config.ros_yaml import read_yaml
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import RunFacts, flat_layout, write_bag
 from stickslip_sim.recording.messages import Packer
 from stickslip_sim.recording.run import open_run, receipt_file
-from stickslip_sim.recording.topics import DRIVE_VELOCITY, RECORDED, SLIDER_STATE
 from stickslip_sim.runs import SimulatedRun, simulate
 from stickslip_sim.scene import Scene, scene_from_values
+from stickslip_sim.scene.ros_yaml import read_yaml
 from tests.support import tool
 from tests.support.tool import Capture
 

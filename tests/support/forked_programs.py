@@ -13,7 +13,6 @@ import sys
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
-from importlib import import_module
 from multiprocessing.forkserver import ensure_running
 from pathlib import Path
 from tempfile import TemporaryFile
@@ -61,7 +60,9 @@ class _Start(NamedTuple):
         os.dup2(os.open(self.errors, os.O_WRONLY | os.O_APPEND), 2)
         sys.stderr = os.fdopen(2, 'w', buffering=1, encoding='utf-8', closefd=False)
         self.prepare()
-        code = import_module(f'stickslip_sim.ros.{self.program}').main([*self.arguments])
+        from stickslip_sim.ros import executables
+
+        code = getattr(executables, self.program)([*self.arguments])
         ctypes.pythonapi.Py_Exit(code)    # all that an interpreter does at its end; multiprocessing leaves it out
 
 

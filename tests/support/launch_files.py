@@ -4,7 +4,7 @@
 
 It knows what these files use and no more, with the rules of launch: a configuration that is set stays, a declared
 argument sets it otherwise, and what a file includes shares all of them.  Where launch is installed,
-tests/house/test_launch_for_real.py holds it to what launch starts and declares.
+tests/house/test_launch.py holds it to what launch starts and declares.
 """
 
 import os

@@ -7,7 +7,7 @@ from typing import Any
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, RigidContact, pack
 from stickslip_sim.axis.codes import DECELERATING
-from stickslip_sim.axis.friction_segments import segment_above, segment_below
+from stickslip_sim.axis.forces import segment_above, segment_below
 from stickslip_sim.axis.layout import Parameters
 from stickslip_sim.axis.state_record import State
 from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind

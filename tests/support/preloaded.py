@@ -11,12 +11,13 @@ with warnings.catch_warnings():   # rclpy loads it at the first message, and it 
     warnings.simplefilter('ignore')
     importlib.import_module('rosidl_generator_py')
 
-from stickslip_sim.recording import flat_layout, schema, topics
+from stickslip_sim.bags import topics
+from stickslip_sim.recording import flat_layout, schema
 from stickslip_sim.ros.node.endpoints import message_type
 
-for room in ('sim_node', 'cascade_controller', 'compensating_controller', 'replay_node', 'health', 'process.program',
-             'node.feed_axis', 'controllers.controller_node', 'replay.node', 'diagnostics.health_node'):
-    importlib.import_module(f'stickslip_sim.ros.{room}')
+for module in ('executables', 'programs', 'node.feed_axis', 'controllers.controller_node', 'replay.node',
+               'health_node'):
+    importlib.import_module(f'stickslip_sim.ros.{module}')
 for topic in topics.RECORDED:
     schema(topic.type)
     type(message_type(topic)).__import_type_support__()

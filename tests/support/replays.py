@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from stickslip_sim.recording import Bag
-from stickslip_sim.rig import Fault, RigEventKind, StepResult
 from stickslip_sim.scene import Scene, scene_from_values
+from stickslip_sim.simulation import Fault, RigEventKind, StepResult
 from tests.support.rigs import Order, Script, force, run, velocity
 
 FIELDS = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',

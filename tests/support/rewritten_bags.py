@@ -8,7 +8,7 @@ from pathlib import Path
 from mcap.reader import make_reader
 from mcap.writer import CompressionType, Writer
 
-from stickslip_sim.recording.bag import METADATA
+from stickslip_sim.bags.bag import METADATA
 
 Rename = Callable[[str], str | None]
 Replace = Callable[[str, int, bytes], bytes | None]   # topic, sequence and data of a message

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.core.input_profile import InputProfile, constant
 from stickslip_sim.core.time_grid import Grid
-from stickslip_sim.rig import Fault, Rig, RigEventKind, StepResult
-from stickslip_sim.rig.faults import RULES
-from stickslip_sim.rig.settings import RigSettings
+from stickslip_sim.simulation import Fault, Rig, RigEventKind, StepResult
+from stickslip_sim.simulation.faults import RULES
+from stickslip_sim.simulation.rig import RigSettings
 from stickslip_sim.solvers import Solver, exact
 from tests.support.axes import COMPLIANT, RIGID, paper_axis
 

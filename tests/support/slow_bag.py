@@ -8,10 +8,9 @@ from typing import Any
 
 from stickslip_sim.core.types import Sample
 from stickslip_sim.recording import open_run, recordings
-from stickslip_sim.ros.node.axis_program import PROGRAM
+from stickslip_sim.ros import executables
 from stickslip_sim.ros.node.publishers import Publishers
-from stickslip_sim.ros.process.program import live
-from stickslip_sim.ros.process.stop_signals import Signals
+from stickslip_sim.ros.stop_signals import Signals
 
 SIGNALS = Signals()
 LAGS: list[int] = []
@@ -30,6 +29,7 @@ def sample(publishers: Publishers, _: int, state: Sample) -> None:
 if __name__ == '__main__':
     recordings.open_run = slow_open_run    # type: ignore[assignment, attr-defined]
     Publishers.sample = sample             # type: ignore[assignment, method-assign]
-    code = live(['--ros-args', *sys.argv[1:]], SIGNALS, PROGRAM)
+    executables.Signals = lambda: SIGNALS  # type: ignore[assignment, attr-defined]
+    code = executables.sim_node(['--ros-args', *sys.argv[1:]])
     print(min(LAGS) * 1e-9)
     sys.exit(code)

@@ -8,14 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from stickslip_sim.bags import topics
+from stickslip_sim.bags.bag import BagWriter
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.recording import MessageCodec, RunFacts, checkpoint_file, open_run, receipt_file, topics, write_bag
-from stickslip_sim.recording.bag import BagWriter
+from stickslip_sim.recording import MessageCodec, RunFacts, checkpoint_file, open_run, receipt_file, write_bag
 from stickslip_sim.recording.messages import Packer, header, time_message
-from stickslip_sim.rig import Fault, Rig, RigEvent
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene, changed
+from stickslip_sim.simulation import Fault, Rig, RigEvent
 
 _STEPS = 12
 _PLACES = {topic: place for place, topic in enumerate(topics.RECORDED)}

@@ -15,7 +15,7 @@ from rcl_interfaces.srv import GetParameters
 from rclpy.node import Node
 from simulation_interfaces import srv
 
-from stickslip_sim.ros.node.conversion import fields_of
+from stickslip_sim.ros.node.endpoints import fields_of
 
 
 def main() -> None:

@@ -1,30 +1,32 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip verify` on bags of the tool: identical, or what differs; cut, damaged, foreign; what if."""
+"""`stickslip verify` on bags of the tool: identical, or what differs and how quickly it is found."""
 
 import struct
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
+from stickslip_sim import load_scene, simulate
+from stickslip_sim.bags.topics import FRICTION_FORCE, SLIDER_STATE, Topic
+from stickslip_sim.check import verification
+from stickslip_sim.check.origin import doubts_about
+from stickslip_sim.check.verification import Difference, Verdict, same_bytes, verify
 from stickslip_sim.cli.main import run
-from stickslip_sim.recording import flat_layout, open_bag, read_run
-from stickslip_sim.recording.topics import FRICTION_FORCE, SLIDER_STATE, Topic
-from stickslip_sim.verify.origin import doubts_about
-from stickslip_sim.verify.verification import verify
+from stickslip_sim.core.errors import RecordingWarning
+from stickslip_sim.recording import RunFacts, flat_layout, open_bag, read_run
+from stickslip_sim.recording.offline_bag import write_blocks
+from tests.support.check_files import cut
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
 from tests.support.verify_tool import verified
 
-STEPS, EVENTS = 3001, 17     # of the bag
+STEPS, EVENTS = 3001, 17     # of that bag
 FAULTS = ('faults.ids=[dry, knock]', 'faults.kinds=[friction_scale, force_pulse]', 'faults.starts=[0.3, 0.7004]',
           'faults.durations=[0.5, 0.0125]', 'faults.values=[1.5, 900.0]')
-
-
-@pytest.fixture(scope='module')
-def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return simulated(tmp_path_factory.mktemp('runs') / 'eight', 'paper_fig8', 3.0)
 
 
 def simulated(folder: Path, scene: str, duration: float, *changes: str) -> Path:
@@ -34,8 +36,8 @@ def simulated(folder: Path, scene: str, duration: float, *changes: str) -> Path:
 
 
 class TestIdentical:
-    def test_what_it_says(self, bag: Path, capsys: Capture) -> None:
-        assert verified(capsys, bag) == (0, f'identical, {STEPS} steps, {EVENTS} events, up to t = 3 s\n', '')
+    def test_what_it_says(self, fig8_bag: Path, capsys: Capture) -> None:
+        assert verified(capsys, fig8_bag) == (0, f'identical, {STEPS} steps, {EVENTS} events, up to t = 3 s\n', '')
 
     @pytest.mark.parametrize(('scene', 'duration', 'changes'), [
         ('cutting_force', 1.0, ['time.rate=333.3']),
@@ -52,66 +54,69 @@ class TestIdentical:
         assert verdict.steps == recording.bag.counts['/slider_state'] > 50
         assert verdict.events == recording.bag.counts['/mode_event'] > 2
 
-    def test_an_mcap_file_in_another_namespace(self, bag: Path, tmp_path: Path) -> None:
-        rewritten(bag, tmp_path / 'cell', lambda name: f'/cell{name}' if name != '/parameter_events' else name)
+    def test_an_mcap_file_in_another_namespace(self, fig8_bag: Path, tmp_path: Path) -> None:
+        rewritten(fig8_bag, tmp_path / 'cell', lambda name: f'/cell{name}' if name != '/parameter_events' else name)
         assert verify(read_run(tmp_path / 'cell' / 'run_0.mcap')).steps == STEPS
+
+
+def of_step(bag: Path, topic: Topic, step: int) -> tuple[bytes, list[Any]]:
+    """Return the message of a step, and its numbers."""
+    data = next(item.data for item in open_bag(bag).messages([f'/{topic.name}']) if item.sequence == step)
+    numbers = flat_layout(topic.type).numbers(data)
+    assert numbers is not None
+    return data, list(numbers)
+
+
+def with_number(topic: Topic, original: bytes, numbers: list[Any], field: str, number: float) -> bytes:
+    """Return a message with another number in a field."""
+    layout = flat_layout(topic.type)
+    place = layout.names.index(field)
+    return original[:12] + layout.pack(0, *numbers[:place], number, *numbers[place + 1:])[12:]
+
+
+def difference_of(folder: Path) -> Difference:
+    difference = verify(read_run(folder)).difference
+    assert difference is not None
+    return difference
 
 
 class TestDifferent:
     @pytest.mark.parametrize('topic', [SLIDER_STATE, FRICTION_FORCE])
-    def test_every_field_to_the_last_bit(self, topic: Topic, bag: Path, tmp_path: Path) -> None:
-        layout = flat_layout(topic.type)
-        name = f'/{topic.name}'
-        original = next(item.data for item in open_bag(bag).messages([name]) if item.sequence == 1500)
-        numbers = layout.numbers(original)
-        assert numbers is not None
-        for place, field in enumerate(layout.names):
-            changed = list(numbers)
-            changed[place] = nudged(numbers[place])
-            data = original[:12] + layout.pack(0, *changed)[12:]
-            folder = rewritten(bag, tmp_path / field, message=replacing(name, 1500, data))
-            difference = verify(read_run(folder)).difference
-            assert difference is not None
-            assert (difference.step, difference.topic, difference.field) == (1500, name, field)
-            assert (difference.recorded, difference.made) == (changed[place], numbers[place])
+    def test_every_field_to_the_last_bit(self, topic: Topic, fig8_bag: Path, tmp_path: Path) -> None:
+        name, (original, numbers) = f'/{topic.name}', of_step(fig8_bag, topic, 1500)
+        for field, number in zip(flat_layout(topic.type).names, numbers, strict=True):
+            data = with_number(topic, original, numbers, field, nudged(number))
+            found = difference_of(rewritten(fig8_bag, tmp_path / field, message=replacing(name, 1500, data)))
+            assert (found.step, found.topic, found.field) == (1500, name, field)
+            assert (found.recorded, found.made) == (nudged(number), number)
 
-    def test_a_sign_of_zero_and_a_stamp(self, bag: Path, tmp_path: Path) -> None:
-        layout = flat_layout(SLIDER_STATE.type)
-        original = next(item.data for item in open_bag(bag).messages(['/slider_state']) if item.sequence == 0)
-        numbers = layout.numbers(original)
-        assert numbers is not None
-        place = layout.names.index('position')
-        assert numbers[place] == 0.0
-        zero = original[:12] + layout.pack(0, *numbers[:place], -0.0, *numbers[place + 1:])[12:]
+    def test_a_sign_of_zero_and_a_stamp(self, fig8_bag: Path, tmp_path: Path) -> None:
+        original, numbers = of_step(fig8_bag, SLIDER_STATE, 0)
+        zero = with_number(SLIDER_STATE, original, numbers, 'position', -0.0)
+        assert zero != original
         later = original[:8] + struct.pack('<I', 1) + original[12:]
         for data, field in ((zero, 'position'), (later, 'header.stamp')):
-            folder = rewritten(bag, tmp_path / field, message=replacing('/slider_state', 0, data))
-            difference = verify(read_run(folder)).difference
-            assert difference is not None
-            assert difference.field == field
+            folder = rewritten(fig8_bag, tmp_path / field, message=replacing('/slider_state', 0, data))
+            assert difference_of(folder).field == field
 
-    def test_a_transition_too_few_and_one_too_many(self, bag: Path, tmp_path: Path) -> None:
-        times = {item.sequence: item.log_time for item in open_bag(bag).messages(['/mode_event'])}
+    def test_a_transition_too_few_and_one_too_many(self, fig8_bag: Path, tmp_path: Path) -> None:
+        times = {item.sequence: item.log_time for item in open_bag(fig8_bag).messages(['/mode_event'])}
         step = list(times)[3]
-        less = rewritten(bag, tmp_path / 'less', message=lambda topic, number, data: (
+        less = rewritten(fig8_bag, tmp_path / 'less', message=lambda topic, number, data: (
             None if (topic, number) == ('/mode_event', step) else data))
-        difference = verify(read_run(less)).difference
-        assert difference is not None
+        difference = difference_of(less)
         assert (difference.step, difference.recorded) == (step, None)
         assert difference.time == difference.made == pytest.approx(times[step] * 1e-9, abs=1e-9)
-        more = rewritten(bag, tmp_path / 'more', definition=lambda text: text)
         other = simulated(tmp_path / 'other', 'paper_fig8', 3.0, 'axis.normal_force=3000.0')
-        scene = (open_bag(other).attachments['scene.yaml'])
-        mixed = rewritten(more, tmp_path / 'mixed', contents=lambda name, data: scene if name == 'scene.yaml' else data)
-        assert verify(read_run(mixed)).difference is not None
+        scene = open_bag(other).attachments['scene.yaml']
+        mixed = rewritten(fig8_bag, tmp_path / 'mixed', contents=lambda name, data: (
+            scene if name == 'scene.yaml' else data))
+        assert difference_of(mixed)
 
-    def test_what_it_says(self, bag: Path, tmp_path: Path, capsys: Capture) -> None:
-        layout = flat_layout(SLIDER_STATE.type)
-        original = next(item.data for item in open_bag(bag).messages(['/slider_state']) if item.sequence == 1500)
-        numbers = layout.numbers(original)
-        assert numbers is not None
-        data = original[:12] + layout.pack(0, numbers[0], numbers[1], 0.25, *numbers[3:])[12:]
-        folder = rewritten(bag, tmp_path / 'odd', message=replacing('/slider_state', 1500, data),
+    def test_what_it_says(self, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+        original, numbers = of_step(fig8_bag, SLIDER_STATE, 1500)
+        data = with_number(SLIDER_STATE, original, numbers, 'position', 0.25)
+        folder = rewritten(fig8_bag, tmp_path / 'odd', message=replacing('/slider_state', 1500, data),
                            metadata=lambda facts: {**facts, 'numpy': '1.0'})
         code, out, err = verified(capsys, folder)
         assert code == 3
@@ -132,3 +137,65 @@ def nudged(number: float) -> float:
 
 def replacing(topic: str, sequence: int, data: bytes) -> Callable[[str, int, bytes], bytes]:
     return lambda name, number, original: data if (name, number) == (topic, sequence) else original
+
+
+DURATION = 4.0
+
+
+@pytest.fixture(scope='module', params=['cutting_force', 'paper_fig8', 'positioning'])
+def offline(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of an offline run."""
+    scene = load_scene(request.param)
+    folder = tmp_path_factory.mktemp('runs') / 'run'
+    run = simulate(scene, DURATION)
+    write_blocks(folder, RunFacts.of(scene, DURATION, scene.time.step), run.sample_blocks(), run.events, {})
+    return folder
+
+
+def of_both(folder: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Verdict, Verdict]:
+    """Return what verify says as it is, and without the quick comparison."""
+    run = read_run(folder)
+    quick = verify(run)
+    monkeypatch.setattr(verification, 'same_bytes', lambda *_: None)
+    return quick, verify(run)
+
+
+def test_a_whole_run(offline: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The quick comparison finds it the same, with the same figures as step by step."""
+    scene = load_scene(read_run(offline).scene.name)
+    assert same_bytes(read_run(offline), simulate(scene, DURATION)) is not None
+    quick, slow = of_both(offline, monkeypatch)
+    assert quick == slow
+
+
+@pytest.mark.parametrize('share', [0.3, 0.5, 0.8])
+def test_a_run_that_was_cut_off(offline: Path, share: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As far as it goes, up to its last whole step."""
+    with pytest.warns(RecordingWarning, match='no end'):
+        quick, slow = of_both(cut(offline, tmp_path / 'cut', share), monkeypatch)
+    assert quick == slow
+
+
+@pytest.mark.parametrize('name', ['position', 'friction_force', 'drive_velocity', 'direction', 'a transition'])
+def test_a_changed_bit_is_found_step_by_step(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The quick comparison does not decide on it, nor on a transition that is missing."""
+    scene = load_scene('paper_fig8')
+    run = simulate(scene, DURATION)
+    samples, events = dict(run.samples), list(run.events)
+    if name in samples:
+        samples[name] = samples[name].copy()
+        samples[name][2500] = np.nextafter(samples[name][2500], 9.0) if name != 'direction' else -1.0
+    else:
+        del events[-1]
+    write_blocks(tmp_path / 'run', RunFacts.of(scene, DURATION, scene.time.step), [samples], events, {})
+    assert same_bytes(read_run(tmp_path / 'run'), run) is None
+    quick, slow = of_both(tmp_path / 'run', monkeypatch)
+    assert quick == slow
+    assert quick.difference is not None
+    assert name not in samples or quick.difference.step == 2500
+
+
+def test_a_shorter_run_is_not_a_longer_one(offline: Path) -> None:
+    """Steps beyond the end of the run made again are not the same as nothing."""
+    run = read_run(offline)
+    assert same_bytes(run, simulate(run.scene, DURATION / 2)) is None

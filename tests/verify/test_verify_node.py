@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from stickslip_sim.check.origin import checkpoint_of, doubts_about
+from stickslip_sim.check.verification import Verdict, verify
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, read_run
-from stickslip_sim.rig import RigEventKind
-from stickslip_sim.verify.origin import checkpoint_of, doubts_about
-from stickslip_sim.verify.verification import Verdict, verify
+from stickslip_sim.simulation import RigEventKind
 from tests.support.node_processes import running
 from tests.support.rewritten_bags import rewritten
 from tests.support.ros_nodes import Client, client

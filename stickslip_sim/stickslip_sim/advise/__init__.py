@@ -1,3 +1,3 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Advice: the effect and the cost of each part of a scene, and the least scene and solver for a tolerance."""
+"""Which solver and which parts of a scene are worth their time, by trial runs.  Rivals are measured in `bench`."""

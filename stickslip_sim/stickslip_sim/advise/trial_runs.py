@@ -13,12 +13,12 @@ from ..bench.peers.peer import NO_SETTING
 from ..bench.problem import Outcome, Problem
 from ..core.errors import InputError, SolverError
 from ..core.types import Event, Instant, Sample
-from ..runs import SimulatedRun, simulate
+from ..figures.distance import Distance, RunFigures, distance_between, run_figures
+from ..runs import SimulatedRun, simulate, simulate_events
 from ..scene import Scene, changed
 from ..simulation.simulator import Simulator
 from ..solvers import Solver, with_advance
-from .figure_distance import Distance, RunFigures, distance_between, run_figures
-from .part import Changes
+from .parts import Changes
 
 BY_EXACT: Changes = {'solver.name': 'exact'}
 
@@ -164,3 +164,61 @@ def _cost_of_one(run: Callable[[], Outcome]) -> Cost | None:
 
 def _per_second(cost: Cost | None, duration: float) -> Cost | None:
     return cost and Cost(cost.median / duration, cost.low / duration, cost.high / duration, cost.samples)
+
+
+# The solvers that a scene is tried with, each with settings from quick to careful.
+
+EXACT = 'exact'
+
+
+def solver_settings(scene: Scene) -> dict[str, Changes]:
+    """Return the changes to a scene that choose each solver, by a name for people; that of the scene is among them."""
+    found: dict[str, Changes] = {EXACT: {'solver.name': EXACT}}
+    for method, steps in (('euler', (1e-3, 1e-4, 1e-5)), ('rk4', (1e-3, 1e-4))):
+        for step in steps:
+            _add(found, {'solver.name': 'fixed_step', 'solver.method': method, 'solver.step': step})
+    for tolerance in (1e-6, 1e-9, 1e-12):
+        _add(found, {'solver.name': 'adaptive', 'solver.method': 'DOP853', 'solver.rtol': tolerance,
+                     'solver.atol': tolerance})
+    if scene.solver.name != EXACT:
+        _add(found, {'solver.name': scene.solver.name,
+                     **{f'solver.{name}': value for name, value in scene.solver.settings.items()}})
+    return found
+
+
+def _add(found: dict[str, Changes], changes: Changes) -> None:
+    found[_label(**{name.removeprefix('solver.'): value for name, value in changes.items()})] = changes
+
+
+def _label(name: str, method: str, step: float | None = None, rtol: float | None = None,
+           atol: float | None = None) -> str:
+    if step is not None:
+        return f'{name} {method}, step {step * 1e3:g} ms'
+    return f'{name} {method}, {rtol:g}' if rtol == atol else f'{name} {method}, rtol {rtol:g}, atol {atol:g}'
+
+
+# The duration of the runs: the longest allowed one, and one that is enough when none is given.
+
+_CYCLES = 20
+_SHORTEST, _LONGEST_TRIAL = 10.0, 320.0   # s
+
+_MAX_DURATION = 3600.0               # s: solvers that step take minutes for it
+
+
+def check_duration(duration: float) -> None:
+    """Raise InputError unless all solvers can be run for `duration` s in a bearable time."""
+    if not 0.0 < duration <= _MAX_DURATION:
+        raise InputError('duration', duration, f'> 0 and <= {_MAX_DURATION:g} s',
+                         'every solver runs it, also those of the shortest steps: advise on a part of it')
+
+
+def default_duration(scene: Scene) -> float:
+    """Return 10 s, doubled up to 320 s while the exact solver finds fewer than 20 cycles; 10 s if there are none."""
+    exact, duration = changed(scene, BY_EXACT), _SHORTEST
+    while True:
+        cycles = simulate_events(exact, duration).summary.cycles
+        if cycles >= _CYCLES:
+            return duration
+        if duration >= _LONGEST_TRIAL:
+            return _LONGEST_TRIAL if cycles else _SHORTEST
+        duration *= 2.0

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The physics of the paper: one axis, its motion in each mode, what happens between two modes; and its records."""
+"""The physics of one axis: forces, modes, transitions, records.  What brings it through time is in `solvers`."""
 
 from .parameters import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start, pack
 

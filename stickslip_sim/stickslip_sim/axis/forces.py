@@ -2,12 +2,80 @@
 # SPDX-License-Identifier: Apache-2.0
 """The forces on the slider: of the drive, the contact and friction; their rounding and rates at the segment start."""
 
+import math
+from typing import NamedTuple
+
 from ..core.hot_path import inlined
+from ..friction.static import static_coefficient
 from .codes import ACCELERATING, COASTING, STICK, YIELDING
-from .friction_segments import friction_line, kinetic_at_rest
 from .layout import Parameters
 from .sinusoids import forced_rate
 from .state_record import State
+
+# Kinetic friction on the segments of the tables: which segment a speed is on, mu_k and psi along it.
+
+@inlined
+def first_segment(p: Parameters, direction: float) -> int:
+    """Return the index of the segment of the tables at standstill, for motion in a direction."""
+    return int(p.backward_segment) if direction < 0.0 else 0
+
+
+@inlined
+def segment_above(p: Parameters, direction: float, speed: float) -> int:
+    """Return the index of the table's segment that goes up from a speed: a breakpoint belongs to the one above it."""
+    segment = first_segment(p, direction)
+    while p.segments[segment].end <= speed < math.inf:
+        segment += 1
+    return segment
+
+
+@inlined
+def segment_below(p: Parameters, direction: float, speed: float) -> int:
+    """Return the index of the table's segment that goes down from a speed: a breakpoint belongs to the one below it."""
+    segment = segment_above(p, direction, speed)
+    return segment - 1 if speed > 0.0 and p.segments[segment].speed == speed else segment
+
+
+@inlined
+def breakpoint_speed(p: Parameters, segment: int) -> float:
+    """Return the speed at which a segment begins: 0 at standstill."""
+    return p.segments[segment].speed
+
+
+@inlined
+def segment_end(p: Parameters, segment: int) -> float:
+    """Return the speed of the breakpoint at which a segment ends, infinity for the last one of its direction."""
+    return p.segments[segment].end
+
+
+@inlined
+def friction_line(p: Parameters, segment: int, speed: float) -> tuple[float, float, float, float]:
+    """Return mu_k, its slope, psi and its slope at `speed` on a segment of the table."""
+    beyond = speed - p.segments[segment].speed
+    slope, psi_slope = p.segments[segment].slope, p.segments[segment].psi_slope
+    return p.segments[segment].friction + slope * beyond, slope, p.segments[segment].psi + psi_slope * beyond, psi_slope
+
+
+@inlined
+def slip_friction(p: Parameters, s: State) -> tuple[float, float]:
+    """Return the coefficient of friction on the present branch and segment as a line: at standstill, and its slope."""
+    coefficient, slope, psi, psi_slope = friction_line(p, int(s.segment), 0.0)
+    if s.mode == ACCELERATING:
+        return coefficient + s.excess * psi, slope + s.excess * psi_slope
+    return coefficient, slope
+
+
+@inlined
+def kinetic_at_rest(p: Parameters, direction: float) -> float:
+    """Return mu_k(0) in a direction."""
+    return p.segments[first_segment(p, direction)].friction
+
+
+@inlined
+def has_branches(p: Parameters) -> bool:
+    """Whether friction depends on the sign of the acceleration."""
+    return p.branches != 0.0
+
 
 ROUNDING = 8.0 * 2.220446049250313e-16   # of the terms of a sum of forces
 
@@ -112,3 +180,55 @@ def force_rate(p: Parameters, s: State) -> tuple[float, float]:
     if abs(rate) <= ROUNDING * (p.stiffness * (abs(s.inputs.v) + abs(s.velocity)) + abs(pushed)):
         rate = 0.0
     return rate, p.stiffness * s.inputs.v_rate
+
+
+# The static limit of an axis: mu_s after a rest time, against a force of either direction.
+
+class StaticNumbers(NamedTuple):
+    """The numbers of the static law in one direction: mu_0, mu_inf, tau in s, Kato's exponent."""
+
+    initial: float
+    limit: float
+    tau: float
+    exponent: float
+
+
+@inlined
+def static_numbers(p: Parameters, side: float) -> StaticNumbers:
+    """Return the numbers of the static law against a force of this sign."""
+    if side < 0.0 and p.sided != 0.0:
+        return StaticNumbers(p.backward_initial, p.backward_limit, p.backward_tau, p.backward_exponent)
+    return StaticNumbers(p.static_initial, p.static_limit, p.static_tau, p.static_exponent)
+
+
+@inlined
+def static_limit(p: Parameters, rest: float, side: float) -> float:
+    """Return mu_s after the rest time, against a force of this sign."""
+    of = static_numbers(p, side)
+    return static_coefficient(p.static_law, of.initial, of.limit, of.tau, of.exponent,
+                              max(rest - p.static_delay, 0.0))
+
+
+@inlined
+def limit_backwards(p: Parameters, rest: float, forwards: float) -> float:
+    """Return mu_s backwards after the rest time, given that forwards: the same, where there is no difference."""
+    return static_limit(p, rest, -1.0) if p.sided != 0.0 else forwards
+
+
+@inlined
+def lower_limit(p: Parameters, rest: float) -> float:
+    """Return mu_s after the rest time, the smaller one of both directions."""
+    limit = static_limit(p, rest, 1.0)
+    return min(limit, limit_backwards(p, rest, limit))
+
+
+@inlined
+def static_at_once(p: Parameters, side: float) -> float:
+    """Return mu_s at rest time 0 against a force of this sign."""
+    return p.backward_initial if side < 0.0 else p.static_initial
+
+
+@inlined
+def holds_nothing(p: Parameters) -> bool:
+    """Whether the static limit is 0 at any rest time: no normal force, or no static friction."""
+    return p.normal_force * max(p.static_limit, p.backward_limit) == 0.0

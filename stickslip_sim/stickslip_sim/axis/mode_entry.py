@@ -10,18 +10,24 @@ import math
 
 from ..core.hot_path import inlined
 from .codes import ACCELERATING, COASTING, DECELERATING, STICK, YIELDING
-from .forces import ROUNDING, applied_force, contact_force, force_rate, force_rounding, holds_by_drive, yielding_force
-from .friction_segments import (
+from .forces import (
+    ROUNDING,
+    applied_force,
+    contact_force,
     first_segment,
+    force_rate,
+    force_rounding,
     friction_line,
     has_branches,
+    holds_by_drive,
+    holds_nothing,
     kinetic_at_rest,
     segment_above,
     segment_below,
+    yielding_force,
 )
 from .layout import Parameters
 from .state_record import State
-from .static_limits import holds_nothing
 
 _TIE = 1e-15   # of the friction force: a closed-form acceleration smaller than that is a tie
 

@@ -23,8 +23,7 @@ import math
 from ..core.hot_path import compiled, inlined
 from ..linear.oscillator import Oscillator, ShortIntegrals, integrals, oscillator, short_integrals
 from .codes import ACCELERATING, COASTING, STICK, YIELDING
-from .forces import feed_damping, friction_force, is_rigid_stick, yielding_force
-from .friction_segments import friction_line
+from .forces import feed_damping, friction_force, friction_line, is_rigid_stick, yielding_force
 from .layout import Parameters
 from .sinusoids import begin_sinusoids, move_sinusoids, sinusoid_drive_travel, sinusoid_travel
 from .slip_series import begin_series, moves_by_series, series_deflection, series_travel

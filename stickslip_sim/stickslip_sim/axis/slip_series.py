@@ -25,8 +25,7 @@ import math
 from ..core.hot_path import compiled, inlined
 from ..linear.waves import TURN
 from .codes import COASTING, STICK, YIELDING
-from .forces import feed_damping
-from .friction_segments import kinetic_at_rest, slip_friction
+from .forces import feed_damping, kinetic_at_rest, slip_friction
 from .layout import Parameters
 from .sinusoids import fastest_sinusoid
 from .smooth_load import load_bounds

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from ..core.hot_path import compiled, inlined
 from ..linear.waves import TURN, turns
 from .codes import COASTING
-from .friction_segments import friction_line
+from .forces import friction_line
 from .layout import Parameters
 from .state_record import State
 

@@ -25,17 +25,22 @@ from .forces import (
     ROUNDING,
     applied_force,
     band_of,
+    breakpoint_speed,
     contact_force,
     drive_force,
     force_rate,
     force_rounding,
     friction_force,
+    friction_line,
     holds_by_drive,
+    kinetic_at_rest,
+    segment_above,
     stated_drive_force,
+    static_at_once,
+    static_limit,
     stick_force,
     yielding_force,
 )
-from .friction_segments import breakpoint_speed, friction_line, kinetic_at_rest, segment_above
 from .layout import Parameters
 from .mode_entry import (
     begin_yielding,
@@ -51,7 +56,6 @@ from .mode_entry import (
 )
 from .rows import Events
 from .state_record import State
-from .static_limits import static_at_once, static_limit
 
 _MUCH = 16.0     # so much more is lost on a steep segment of the table before the forces know it better
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from ..core.callbacks import Progress
 from ..core.errors import SolverError
+from ..core.types import Progress
 from ..reference import simulate as simulate_reference
 from .accuracy import Errors, Truth, errors_of
 from .measure import Cost, cost_sample, measure

@@ -8,7 +8,7 @@ import platform
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from ..runs.receipt import versions
+from ..report.values import versions
 from .peers.peer import Setting
 from .race import RACE_DIGITS, CaseResult, Row
 from .ratios import Ratio

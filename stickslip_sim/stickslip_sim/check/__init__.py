@@ -1,3 +1,3 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pass or fail: what an axis did, recorded or simulated, against the limits in a file."""
+"""A run against limits, and a recorded run made again.  Comparing with the paper is in `compare`."""

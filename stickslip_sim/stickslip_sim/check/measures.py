@@ -7,6 +7,9 @@ themselves.  The drive is known at the samples.
 """
 
 import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +18,10 @@ from scipy.interpolate import CubicHermiteSpline
 from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..core.types import EventKind, Mode
-from ..simulation.cycles import cycle_figures, mode_spans
-from .observed_motion import MotionBlock, MotionSpan, Points
+from ..figures.catalogue import unit_of
+from ..figures.cycles import cycle_figures, mode_spans
+from ..scene import Parameter
+from .observed_run import MotionBlock, MotionSpan, Points
 
 
 class MeasuredFigure(NamedTuple):
@@ -59,16 +64,17 @@ class _Largest:
         return MeasuredFigure(self.value, f'at t = {self.time:.6g} s')
 
 
-class FollowingError(LimitMeasure):
-    """The largest |commanded − actual position|, m."""
+class LargestSize(LimitMeasure):
+    """The largest size in a column of a block, which `column` returns with its times."""
 
-    def __init__(self, span: MotionSpan) -> None:
+    def __init__(self, span: MotionSpan, column: Callable[[MotionBlock], tuple[Numbers, Numbers]]) -> None:
         super().__init__(span)
-        self._largest = _Largest()
+        self._column, self._largest = column, _Largest()
 
     def take(self, block: MotionBlock) -> None:
         """Take the next block."""
-        self._largest.take(np.abs(block.following_error), block.time)
+        values, times = self._column(block)
+        self._largest.take(np.abs(values), times)
 
     def figure(self) -> MeasuredFigure:
         """Return what all blocks came to."""
@@ -204,22 +210,6 @@ class LimitCycleAmplitude(LimitMeasure):
         return MeasuredFigure(highest + lowest, f'over {count} cycle{"s" if count > 1 else ""}')
 
 
-class PeakSpeed(LimitMeasure):
-    """The largest |velocity| of the slider, m/s."""
-
-    def __init__(self, span: MotionSpan) -> None:
-        super().__init__(span)
-        self._largest = _Largest()
-
-    def take(self, block: MotionBlock) -> None:
-        """Take the next block."""
-        self._largest.take(np.abs(block.points.velocity), block.points.time)
-
-    def figure(self) -> MeasuredFigure:
-        """Return what all blocks came to."""
-        return self._largest.figure
-
-
 def no_sample_in(begin: float, end: float) -> InputError:
     """Return what is said of a part of a run (s) in which there is no sample."""
     return InputError('window', [begin, end], 'long enough for one sample', 'make it longer')
@@ -232,3 +222,46 @@ def _crossing(points: Points, level: float) -> float:
     """
     cubic = CubicHermiteSpline(*points)
     return float(max(cubic.solve(level, extrapolate=False), default=points.time[1]))
+
+
+# What can be limited: every figure, and what a limit on it must say.
+
+FARTHEST = 1e12   # m, like the positions of a scene
+TIMING_LIMIT = 'timing'
+
+TARGET = Parameter('target', 'double', None, 'm', 'where the slider is to go', low=-FARTHEST, high=FARTHEST)
+_BAND = Parameter('band', 'double', None, 'm', 'either side of the target', low=0.0, low_open=True, high=FARTHEST)
+_CYCLES = Parameter('cycles', 'integer', 1, '', 'at the end of the window', low=1, high=1e6)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A figure; `measure` makes what measures it of a part of a run and the values of `settings` by name."""
+
+    name: str
+    measure: Callable[..., LimitMeasure]
+    settings: tuple[Parameter, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """SI."""
+        return unit_of(self.name)
+
+    @property
+    def maximum(self) -> Parameter:
+        """What a limit may be."""
+        whole = not self.unit
+        return Parameter('max', 'integer' if whole else 'double', None, self.unit, 'largest value that passes', low=0.0,
+                         high=1e9 if whole else FARTHEST, required=True)
+
+
+KINDS = {kind.name: kind for kind in (
+    Kind('following_error', partial(LargestSize, column=lambda block: (block.following_error, block.time))),
+    Kind('end_position_error', EndPositionError, (TARGET,)),
+    Kind('overshoot', Overshoot, (TARGET,)),
+    Kind('settling_time', SettlingTime, (TARGET, _BAND)),
+    Kind('sticks', Sticks),
+    Kind('longest_stick', LongestStick),
+    Kind('limit_cycle_amplitude', LimitCycleAmplitude, (_CYCLES,)),
+    Kind('peak_speed', partial(LargestSize, column=lambda block: (block.points.velocity, block.points.time))),
+)}

@@ -7,12 +7,20 @@ from typing import NamedTuple
 
 from ..core.errors import InputError, RecordingError
 from ..runs import Run
-from .kinds import TIMING_LIMIT
-from .limit_window import CheckedSpan
-from .limits import Limit, Limits, check_fit
-from .measures import no_sample_in
-from .observed_motion import MotionBlock, MotionSpan, ObservedMotion, motion_blocks
-from .observed_run import KnownCommands, commands_of, observed_motion, states_of, timing_of, unmeasured
+from .limits import CheckedSpan, Limit, Limits, check_fit
+from .measures import TIMING_LIMIT, no_sample_in
+from .observed_run import (
+    KnownCommands,
+    MotionBlock,
+    MotionSpan,
+    ObservedMotion,
+    commands_of,
+    motion_blocks,
+    observed_motion,
+    states_of,
+    timing_of,
+    unmeasured,
+)
 
 
 class LimitOutcome(NamedTuple):

@@ -3,11 +3,12 @@
 """`stickslip call`: the services of a running node, for those who have no `ros2`."""
 
 import math
-import os
 from collections.abc import Callable, Mapping
 from typing import Any
 
 import click
+
+from .files import show
 
 _Command = Callable[..., None]
 
@@ -44,25 +45,22 @@ def _record(switch: str, node: str, timeout: float) -> None:
     print(_answered('record', {'data': switch == 'on'}, node, timeout).message)
 
 
-@call.command('reset')
-@_of_node
-def _reset(node: str, timeout: float) -> None:
-    """Begin a new run: time, counters, faults and commands anew."""
-    print(_answered('reset', {}, node, timeout).message)
+def _ask(name: str, service: str, request: Mapping[str, object], text: str,
+         short: str | None = None, node: str = 'feed_axis') -> None:
+    """Add a call that asks for one thing."""
+    @call.command(name, help=text, short_help=short)
+    @_of(node)
+    def _asked(node: str, timeout: float) -> None:
+        print(_answered(service, request, node, timeout).message)
 
 
-@call.command('pause')
-@_of_node
-def _pause(node: str, timeout: float) -> None:
-    """Let simulation time stand still."""
-    print(_answered('set_paused', {'data': True}, node, timeout).message)
-
-
-@call.command('resume')
-@_of_node
-def _resume(node: str, timeout: float) -> None:
-    """Let simulation time go on."""
-    print(_answered('set_paused', {'data': False}, node, timeout).message)
+_ask('reset', 'reset', {}, 'Begin a new run: time, counters, faults and commands anew.')
+_ask('pause', 'set_paused', {'data': True}, 'Let simulation time stand still.')
+_ask('resume', 'set_paused', {'data': False}, 'Let simulation time go on.')
+_ask('restart', 'restart', {}, 'Let an example controller begin its moves anew.',
+     'Let a controller begin its moves anew.', 'cascade_controller')
+_ask('play-next', 'play_next', {}, 'Let a paused replay send its next message.',
+     'Let a paused replay send one message.', 'replay')
 
 
 @call.command('step', short_help='Make steps, in lock-step or paused.')
@@ -74,10 +72,10 @@ def _resume(node: str, timeout: float) -> None:
 @_of_node
 def _step(steps: int, velocity: float, force: float, node: str, timeout: float) -> None:
     """Make STEPS steps (1 if left out) of an axis in lock-step, or paused; print the events and the state."""
-    from .step_lines import step_lines
-
     request = {'steps': steps, 'velocity': velocity, 'force': force}
-    print('\n'.join(step_lines(_answered('step', request, node, timeout, max(steps, 0) * 1e-3))))
+    answer = _answered('step', request, node, timeout, max(steps, 0) * 1e-3)
+    from ..ros.service_call import step_lines
+    show(step_lines(answer))
 
 
 @call.command('inject-fault', short_help='Let something go wrong.')
@@ -96,7 +94,7 @@ def _inject_fault(kind: str, value: float | None, start: float, duration: float,
     (share), command_delay (s), drive_freeze
     """
     from ..core.errors import InputError
-    from ..rig.faults import value_of_kind
+    from ..simulation.faults import value_of_kind
 
     if value is None and (allowed := value_of_kind(kind)):
         raise InputError('--value', value, f'given with {kind}: {allowed}', 'add --value X')
@@ -115,30 +113,17 @@ def _clear_faults(ids: tuple[str, ...], node: str, timeout: float) -> None:
         print(_answered('inject_fault', {'id': fault, 'kind': 'clear'}, node, timeout).message)
 
 
-@call.command('restart', short_help='Let a controller begin its moves anew.')
-@_of('cascade_controller')
-def _restart(node: str, timeout: float) -> None:
-    """Let an example controller begin its moves anew."""
-    print(_answered('restart', {}, node, timeout).message)
-
-
-@call.command('play-next', short_help='Let a paused replay send one message.')
-@_of('replay')
-def _play_next(node: str, timeout: float) -> None:
-    """Let a paused replay send its next message."""
-    print(_answered('play_next', {}, node, timeout).message)
-
-
 @call.command('set', short_help='Change parameters of a node while it runs.')
 @click.argument('changes', metavar='A.B=VALUE...', nargs=-1, required=True)
 @_of_node
 def _set(changes: tuple[str, ...], node: str, timeout: float) -> None:
     """Change parameters of a running node, all of them or none: gains of a controller, axis.mass, rate of a replay."""
     from ..core.errors import RefusedError
+    from ..ros.environment import answer_of_node
     from ..scene import parse_override
 
     values = dict(parse_override(change) for change in changes)
-    result = _answer('set_parameters_atomically', values, node, timeout, 0.0).result
+    result = answer_of_node('set_parameters_atomically', values, node, timeout, 0.0).result
     if not result.successful:
         raise RefusedError(result.reason)
     print('set: ' + ', '.join(values))
@@ -147,22 +132,9 @@ def _set(changes: tuple[str, ...], node: str, timeout: float) -> None:
 def _answered(service: str, request: Mapping[str, object], node: str, timeout: float, duration: float = 0.0) -> Any:
     """Return the answer of a node; raises RefusedError when it refuses, StickslipError when nobody answers."""
     from ..core.errors import RefusedError
+    from ..ros.environment import answer_of_node
 
-    answer = _answer(service, request, node, timeout, duration)
+    answer = answer_of_node(service, request, node, timeout, duration)
     if not answer.success:
         raise RefusedError(answer.message)
     return answer
-
-
-def _answer(service: str, request: Mapping[str, object], node: str, timeout: float, duration: float) -> Any:
-    """Return the answer of a node, a refusal too; raises StickslipError when nobody answers."""
-    from ..core.errors import InputError
-    from ..ros.process.environment import check_environment
-
-    check_environment()
-    try:
-        from ..ros.client.service_call import answer_of
-    except ImportError as error:
-        raise InputError('AMENT_PREFIX_PATH', os.environ.get('AMENT_PREFIX_PATH', ''),
-                         f'that of a workspace with {error.name}', 'source its setup.bash') from None
-    return answer_of(service, request, node, timeout, duration)

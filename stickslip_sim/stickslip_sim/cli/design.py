@@ -8,13 +8,11 @@ from pathlib import Path
 import click
 
 from . import completion
-from .files import check_new_folder, new_folder, say_written
-from .scene_changes import SceneChanges, scene_changes
-
-_SHOWN = 10   # feeds that are printed
+from .arguments import SceneChanges, scene_changes, verb
+from .files import FOLDER, new_folder, say_written, show
 
 
-@click.command(short_help='Propose the feed that would narrow parameters most.')
+@verb(short_help='Propose the feed that would narrow parameters most.')
 @click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
 @click.option('--for', 'parameters', required=True, metavar='A.B,...', shell_complete=completion.complete_parameters,
               help='The parameters to narrow, as friction.static.time_constant,friction.static.limit.')
@@ -31,7 +29,8 @@ _SHOWN = 10   # feeds that are printed
               help='How far each parameter scatters from slip to slip, a share.')
 @click.option('--criterion', type=click.Choice(('D', 'A')), default='D', show_default=True,
               help='What is least: the volume that is left to the parameters, or the sum of their variances.')
-@click.option('--out', metavar='FOLDER', help='New folder for the scene that runs it, and one page.')
+@click.option('--out', type=FOLDER, metavar='FOLDER',
+              help='New folder for the scene that runs it, and one page.')
 @scene_changes('Change a parameter of the scene.')
 def design(scene: str, parameters: str, duration: float, speeds: str | None, travel: float, rate: float,
            resolution: float, noise: float, force_noise: float | None, known: float, scatter: float, criterion: str,
@@ -40,50 +39,21 @@ def design(scene: str, parameters: str, duration: float, speeds: str | None, tra
 
     docs/sensitivities.md says how they are ranked.
     """
-    if out is not None:
-        check_new_folder('--out', out)
-    from ..design.candidate_feeds import default_speeds
-    from ..design.design_folder import (
-        EXPERIMENT_PAGE,
-        EXPERIMENT_SCENE,
-        conditions,
-        table_heads,
-        table_rows,
-        write_design,
-    )
-    from ..design.experiments import Wishes, designed
-    from ..design.information import Sensors
+    from ..sensitivity.candidate_feeds import default_speeds, speeds_of
+    from ..sensitivity.experiments import Wishes, designed
+    from ..sensitivity.information import Sensors
+    from ..sensitivity.report import EXPERIMENT_PAGE, EXPERIMENT_SCENE, design_report, write_design
     from .progress import progress_bar
 
     loaded = changes.load(scene)
     names = tuple(name.strip() for name in parameters.split(','))
-    between = default_speeds(loaded) if speeds is None else _speeds(speeds)
+    between = default_speeds(loaded) if speeds is None else speeds_of(speeds)
     wishes = Wishes(names, duration, between, Sensors(rate, resolution, noise, force_noise), known, scatter, travel,
                     criterion)
     with progress_bar('designing') as progress:
         found = designed(loaded, wishes, progress)
-    print('\n'.join(_lines([table_heads(found), *table_rows(found.experiments[:_SHOWN])])))
-    if len(found.experiments) > _SHOWN:
-        print(f'and {len(found.experiments) - _SHOWN} more')
-    print('\n'.join(conditions(found)))
+    show(design_report(found))
     if out is not None:
         with new_folder('--out', out) as folder:
             write_design(found, folder)
         say_written(str(Path(out) / EXPERIMENT_SCENE), str(Path(out) / EXPERIMENT_PAGE))
-
-
-def _speeds(text: str) -> tuple[float, float]:
-    """Return the ends of LOW:HIGH; raises InputError."""
-    from ..core.errors import InputError
-
-    low, _, high = text.partition(':')
-    try:
-        return float(low), float(high)
-    except ValueError:
-        raise InputError('--speeds', text, 'LOW:HIGH, two numbers in m/s', 'for example 1e-4:1e-2') from None
-
-
-def _lines(rows: list[list[str]]) -> list[str]:
-    widths = [max(map(len, column)) for column in zip(*rows)]
-    return [row[0].ljust(widths[0]) + ''.join(f'  {cell:>{width}}' for cell, width in zip(row[1:], widths[1:]))
-            for row in rows]

@@ -7,19 +7,51 @@ stands a path that is misspelt.
 """
 
 import os
-import shutil
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..core.errors import InputError
-from ..core.paths import nearest_existing
-from ..core.picture_formats import check_picture_name
+from ..core.paths import check_picture_name, made_folder, nearest_existing
+
+if TYPE_CHECKING:
+    from ..report.model import Part
 
 STDOUT = '-'
+
+
+class Output(click.types.StringParamType):
+    """An option that names what a verb writes: checked, for all that the verb writes together, before it begins."""
+
+    def __init__(self, check: Callable[[str, str], None], *endings: str, to_stdout: bool = False) -> None:
+        self._check, self._endings, self._to_stdout = check, endings, to_stdout
+
+    def check(self, option: str, path: str) -> None:
+        """Raise InputError unless it can be written."""
+        if self._endings and Path(path).suffix not in self._endings:
+            raise InputError(option, path, f'a file ending in {" or ".join(self._endings)}', 'name it so')
+        if not (self._to_stdout and path == STDOUT):
+            self._check(option, path)
+
+
+class Verb(click.Command):
+    """A command whose outputs are checked before it begins."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Check and run."""
+        targets = []
+        for option in self.params:
+            if isinstance(option.type, Output):
+                given = ctx.params[option.name or '']
+                for path in given if isinstance(given, tuple) else () if given is None else (given,):
+                    option.type.check(option.opts[0], path)
+                    targets.append((option.opts[0], path))
+        check_distinct(targets)
+        return super().invoke(ctx)
 
 
 def check_file(option: str, path: str) -> None:
@@ -64,6 +96,10 @@ def check_distinct(targets: Iterable[tuple[str, str]]) -> None:
         seen[place] = option
 
 
+FILE, TEXT, PICTURE = Output(check_file), Output(check_file, to_stdout=True), Output(check_picture)
+SCENE_FILE, FOLDER = Output(check_file, '.yaml', '.yml'), Output(check_new_folder)
+
+
 @contextmanager
 def new_folder(option: str, path: str) -> Iterator[Path]:
     """Yield a temporary folder that becomes the new folder `path` at the end, or vanishes on an error.
@@ -72,14 +108,10 @@ def new_folder(option: str, path: str) -> Iterator[Path]:
     """
     place = Path(os.path.abspath(path))
     temporary = place.with_name(f'.{os.getpid()}.{place.name}')
-    try:
-        with _refusing(path):
-            temporary.mkdir(parents=True)
-            yield temporary
-            check_new_folder(option, path)
-            temporary.rename(place)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+    with _refusing(path), made_folder(temporary):
+        yield temporary
+        check_new_folder(option, path)
+        temporary.rename(place)
 
 
 @contextmanager
@@ -113,6 +145,13 @@ def write_text(path: str, lines: Iterable[str]) -> None:
         return
     with whole(path) as temporary, open(temporary, 'w', encoding='utf-8', newline='\n') as file:
         file.writelines(lines)
+
+
+def show(parts: 'Iterable[Part]', flush: bool = False) -> None:
+    """Print a report; at once where the verb goes on with work."""
+    from ..report.text import text_lines
+
+    print(*(f'{line}\n' for line in text_lines(parts)), sep='', end='', flush=flush)
 
 
 def say_written(*paths: str | None) -> None:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ..identification.curve.report import curve_lines, fit_lines, fitted_law_lines, points_lines
 from .files import check_distinct, check_file, check_picture, say_written, whole, write_text
-from .friction_lines import curve_lines, fit_lines, fitted_law_lines, points_lines
 
 if TYPE_CHECKING:
     from ..identification.curve.best_law import Fits

@@ -10,13 +10,11 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
+from .arguments import SceneChanges, recorded_run, scene_changes
 from .files import check_new_folder, new_folder
-from .run_or_scene import recorded_run
-from .scene_changes import SceneChanges, scene_changes
-from .sweeping import process_count
 
 if TYPE_CHECKING:
-    from ..identification.search.work_folder import WorkFolder
+    from ..identification.many_fits import WorkFolder
 
 
 @click.command(short_help='Find the parameters of an axis from a measured run.')
@@ -37,15 +35,17 @@ def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str
     and report.json.  Exit with 3 when the model does not fit the run; the report shows where.  Ctrl-C keeps the fits
     that are done.
     """
+    from ..study.resources import process_count
+
     if not resume:
         check_new_folder('--out', out)
     count = process_count('1' if workers is None else workers)
     from ..core.errors import VerdictError
     from ..identification.identify import identify as find
-    from ..identification.report.results import IDENTIFIED_PAGE, write_results
-    from ..identification.search.work_folder import WorkFolder, facts_of
+    from ..identification.many_fits import WorkFolder, facts_of
+    from ..identification.report import result_lines
+    from ..identification.results import IDENTIFIED_PAGE, write_results
     from ..scene.load import read_text
-    from .identify_lines import result_lines
     from .progress import progress_bar
 
     start = changes.load(scene)

@@ -16,19 +16,18 @@ import click
 
 from ..core.errors import StickslipError, internal_error
 from ..core.version import __version__
-from . import interrupts, standard_output
+from . import process
 from .advise import advise
 from .bench import bench
 from .call import call
 from .check import check
 from .compare import compare
-from .completion import complete_for_shell
+from .completion import SectionedGroup, complete_for_shell
 from .critical import critical
 from .design import design
 from .export import export
 from .extremes import extremes
 from .friction import friction
-from .help_sections import SectionedGroup
 from .identify import identify
 from .import_ import import_
 from .map import map_
@@ -68,8 +67,8 @@ for title, verbs in _SECTIONS.items():
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
     """Run the tool and exit with its code."""
-    interrupts.listen()
-    standard_output.buffer()
+    process.listen()
+    process.buffer()
     code = complete_for_shell(stickslip)
     if code is not None:
         sys.exit(code)
@@ -81,13 +80,13 @@ def run(arguments: Sequence[str]) -> int:
     code = 0
     try:
         code = _invoked(arguments)
-        standard_output.flush()
+        process.flush()
         return code
     except BrokenPipeError:     # the reader has seen enough
-        standard_output.give_up()
+        process.give_up()
         return code
     except OSError as error:
-        standard_output.give_up()
+        process.give_up()
         return _refuse(f'standard output cannot be written: {error.strerror}; send it somewhere else', 2)
 
 
@@ -106,7 +105,7 @@ def _invoked(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt as stop:
         return _refuse(str(stop) or 'interrupted', _INTERRUPTED)
     except Exception as error:
-        if standard_output.is_its(error):
+        if process.is_its(error):
             raise
         return _refuse(internal_error(error), 1)
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import click
 
-from ..core.callbacks import Progress
+from ..core.types import Progress
 
 _STEPS = 1000
 _WITHOUT_SHARE = '%(label)s  %(info)s'

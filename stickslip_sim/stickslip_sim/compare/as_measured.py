@@ -12,18 +12,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.arrays import Numbers
+from ..core.arrays import Columns, Numbers
 from ..core.errors import InputError
-from ..identification.given.free_parameters import FreeParameter
-from ..identification.given.measured_scene import FORMS, with_measured_inputs
-from ..identification.given.motions import motions_of, track_of
-from ..identification.given.readings import SensorReadings, drives_directly, readings_of
-from ..identification.given.run_start import from_measured_start
-from ..identification.report.report_values import sensor_errors
-from ..identification.report.results import IDENTIFIED_SCENE
-from ..identification.trial.axis_model import AxisModel
+from ..identification.axis_model import AxisModel
+from ..identification.free_parameters import FreeParameter
+from ..identification.identified_scene import FORMS, with_measured_inputs
+from ..identification.motions import motions_of, track_of
+from ..identification.readings import SensorReadings, drives_directly, readings_of
+from ..identification.report import sensor_errors
+from ..identification.results import IDENTIFIED_SCENE
+from ..identification.run_start import from_measured_start
 from ..recording import MeasuredRun
-from ..runs import Columns, SimulatedRun, simulate_events
+from ..runs import SimulatedRun, simulate_events
 from ..runs.samples import HeldSamples
 from ..scene import Scene, changed
 from .fresh import densely_sampled

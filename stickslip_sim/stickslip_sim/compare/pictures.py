@@ -7,15 +7,18 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..axis import CompliantContact
-from ..core.callbacks import Progress
+from ..core.types import Progress
+from ..figures.point_figures import Motion
 from ..plots.characteristics import plot_characteristics
-from ..plots.paper_panels import DrawnMotion, plot_motion
-from ..plots.side_by_side import plot_side_by_side
+from ..plots.paper_panels import DrawnMotion, plot_motion, plot_side_by_side
+from ..plots.stability_map import Pick
 from ..runs import Run
-from .characteristics import characteristics_of
-from .conventional import characteristics_beside, scene_as_run
-from .drawn_motion import drawn_motion
-from .fresh import MAX_DRAWN_EVENTS, simulate_densely
+from ..study import Study
+from ..study.diagrams import Ending, ending_at, place_in_map, point_of
+from ..study.table import TableColumns
+from .characteristics import characteristics_beside, characteristics_of, scene_as_run
+from .fresh import MAX_DRAWN_EVENTS, densely_sampled, simulate_densely
+from .look import drawn_motion
 
 PICTURE_KINDS = ('png', 'svg')
 _OF_MOTION = (
@@ -101,3 +104,26 @@ def _likeness(run: Run) -> str:
     if isinstance(axis.contact, CompliantContact):
         return 'Compliant contact, as in Fig. 8 of the paper'
     return 'Rigid contact, as in Fig. 7 of the paper'
+
+
+# Points picked from the map of a study.
+
+_MOST_EVENTS = 10_000   # that a phase plane shows
+_SWINGS_ON = 16.0       # times as long as it took to know that
+
+
+def picked(study: Study, columns: TableColumns, text: str) -> Pick:
+    """Return a point `A,B` of the map of a study with the motion that it ends in; raises InputError."""
+    point = point_of(study, text)
+    ending = ending_at(study, columns, point)
+    shown = _time_shown(ending)
+    is_known = shown == ending.run.duration
+    motion = drawn_motion(densely_sampled(ending.run) if is_known else simulate_densely(ending.run.scene, shown))
+    sticks = ending.motion == Motion.STICK_SLIP
+    return Pick(*place_in_map(study, point), motion if sticks else motion._replace(cycle=None))
+
+
+def _time_shown(ending: Ending) -> float:
+    """Return how much of a motion a phase plane shows, s: all, longer where it swings on, less with many events."""
+    run = ending.run
+    return run.duration * min(_SWINGS_ON if ending.swings_on else 1.0, _MOST_EVENTS / max(len(run.events), 1))

@@ -10,15 +10,16 @@ is linear in what is sought: least squares find it from the recorded motion, wit
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from ..axis import Axis, CompliantContact
-from ..runs import Columns
-from .drawn import complete_sticks, steady_inputs
-from .run_part import RunPart
+from ..core.arrays import Columns
+from ..figures.slips import complete_slips, complete_sticks
+from ..runs import Run
+from .run_part import RunPart, steady_inputs, within
 
 RING_DOWN = 'ring-down'   # the watch
 _LEAST_SAMPLES = 8
@@ -83,3 +84,20 @@ def _ring_down(stiffness: float, damping: float) -> RingDown:
     ratio = damping / (2.0 * omega)
     damped = omega * math.sqrt(max(1.0 - ratio * ratio, 0.0))
     return RingDown(omega / math.tau, damped / math.tau, ratio, 0.5 * damping)
+
+
+# The largest acceleration in each slip.
+
+SLIP_PEAKS = 'slip peaks'   # the watch
+
+
+def slip_peaks(part: RunPart) -> dict[float, float]:
+    """Return the largest |ẍ| of each complete slip of a part, m/s², by its start, s."""
+    return {begin.time: float(np.abs(within(part, begin.time, end.time)['acceleration']).max())
+            for begin, end in complete_slips(part.events)}
+
+
+def peak_accelerations(run: Run, found: Sequence[Mapping[float, float]]) -> list[float]:
+    """Return the largest |ẍ| in the slip of each cycle, m/s²."""
+    peaks = {begin: peak for each in found for begin, peak in each.items()}
+    return [peaks[cycle.begin] for cycle in run.cycles()]

@@ -3,18 +3,13 @@
 """The statements of the paper: the one list that reports and tests go by."""
 
 from ..runs import Run
-from ..runs.kept import kept
-from .contact_effect import CONTACT_EFFECT
-from .continuity import CONTINUITY
-from .limit_cycle import LIMIT_CYCLE
-from .long_rest import LONG_REST
+from ..runs.run import kept
+from .contact_statements import CONTINUITY, OSCILLATION
 from .look import RunLook, watched
-from .oscillation import OSCILLATION
-from .ring_down import RING_DOWN, latest_ringing
-from .slip_peaks import SLIP_PEAKS, slip_peaks
-from .start_balance import START_BALANCE
+from .other_starts import CONTACT_EFFECT, LIMIT_CYCLE
+from .ring_down import RING_DOWN, SLIP_PEAKS, latest_ringing, slip_peaks
+from .slip_statements import LONG_REST, START_BALANCE, TWO_VALUES
 from .statement import Finding, Statement, not_applicable
-from .two_values import TWO_VALUES
 
 STATEMENTS: tuple[Statement, ...] = (START_BALANCE, CONTINUITY, TWO_VALUES, OSCILLATION, LIMIT_CYCLE, CONTACT_EFFECT,
                                      LONG_REST)

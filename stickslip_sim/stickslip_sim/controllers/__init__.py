@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Controllers of the drive: cascade, compensation of friction, and the moves that they follow.  Pure; knows no ROS."""
 
-from .cascade import Cascade
-from .drive_controller import AT_REST, Controller, DriveCommand, Memory
-from .following import Answer, Following, MoveProgress
+from .drive_controller import AT_REST, Answer, Cascade, Controller, DriveCommand, Following, Memory, MoveProgress
 from .friction_branches import BranchCompensation, Slide
 from .moves import Moves, Setpoint
 

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..axis import Axis
-from ..rig import Measured
+from ..simulation import Measured
 
 
 class Slide(NamedTuple):

@@ -13,7 +13,7 @@ from ..core.input_profile import InputProfile, ramp, steps, table
 from ..core.types import Event, Instant
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..inputs import load_scene
-from ..realtime.command_slot import CommandSlot
+from ..realtime.commands import CommandSlot
 from ..simulation.simulator import Simulator
 from ..solvers import Solver
 from .outcome import Measurement, Setup, Tally, require

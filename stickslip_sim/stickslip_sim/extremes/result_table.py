@@ -5,7 +5,7 @@
 import json
 from collections.abc import Sequence
 
-from ..runs.receipt import versions
+from ..report.values import versions
 from .outcome import ExtremeResult
 
 _MARK = 52   # columns

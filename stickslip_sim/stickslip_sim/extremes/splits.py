@@ -16,17 +16,7 @@ from ..simulation.simulator import Simulator
 from ..simulation.solved_axis import MAX_EVENTS_AT_ONCE
 from ..solvers import Solver
 from .outcome import Measurement, Setup, Tally, require
-from .shared_axes import (
-    COMPLIANT,
-    CONTACTS,
-    RIGID,
-    Contact,
-    instant,
-    make,
-    paper_axis,
-    random_axis,
-    random_profiles,
-)
+from .shared_axes import COMPLIANT, CONTACTS, RIGID, Contact, instant, make, paper_axis, random_axis, random_profiles
 
 _PATIENCE = 20.0   # s for a tick full of events; a solver that spins takes for ever
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Friction characteristics: how the static coefficient grows at rest and the kinetic one falls with speed."""
+"""The laws of friction: static over the time at rest, kinetic over the speed.  The motion they cause is in `axis`."""
 
 from .kinetic import ExcessTable, KineticTable
 from .smooth import SmoothExcess, SmoothKinetic

@@ -20,8 +20,7 @@ from ..scene.model import ProfileSource
 from ..scene.profile_schema import FILE_SETTINGS, MOST_POINTS
 from ..scene.schema import BY_NAME
 from ..scene.values import stated
-from .csv_table import CsvTable, Wanted, wanted_column
-from .units import FORCES, LENGTHS, SPEEDS, TIMES
+from .csv_table import FORCES, LENGTHS, SPEEDS, TIMES, CsvTable, Wanted, wanted_column
 
 Given = Mapping[str, object]
 _POSITION = 'position'
@@ -122,7 +121,7 @@ class _Profile:
         option, path = f'{self._section}.file', self._folder / self._file
         bag, colon, topic = self._file.rpartition(':')
         if colon and not path.is_file():
-            from .topic_table import LOG_TIME, TopicTable
+            from .measurement import LOG_TIME, TopicTable
 
             return TopicTable(option, self._folder / bag, topic, self._time(LOG_TIME), [self._column], MOST_POINTS)
         return CsvTable(option, path, [self._time('time'), self._column], MOST_POINTS)

@@ -5,15 +5,17 @@
 import os
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
+from .. import runs
 from ..core.errors import InputError
+from ..core.types import Progress
 from ..scene import Scene
 from ..scene.build import build_scene
-from ..scene.load import named, named_scene, read_scene
+from ..scene.load import named, named_scene, of_a_scene, read_scene
 from ..scene.profile_schema import PROFILES
 from ..scene.schema import NULL
-from ..scene.sections import of_a_scene
 from ..scene.values import overridden, stated
 from .profile_file import prepared, sections_with_file, with_profiles
 
@@ -61,3 +63,20 @@ def scene_with_profiles(values: Mapping[str, object], overrides: Mapping[str, ob
 
 def _changed(base: Mapping[str, object], changes: Mapping[str, object]) -> dict[str, object]:
     return overridden(*prepared(base, changes))
+
+
+# Runs of a scene, or of the one of a name or path.
+
+def simulate(scene: SceneOrName, duration: float, sample_period: float | Fraction | None = None,
+             progress: Progress = None) -> runs.SimulatedRun:
+    """Simulate `duration` seconds of a scene, with a sample every `sample_period` seconds from 0 on (None: each step).
+
+    `progress` is called with the share that is done.  Raises InputError on times without a meaning and on a run too
+    long to hold, SolverError when the solver gives up, and what `load_scene` raises.
+    """
+    return runs.simulate(scene_of(scene), duration, sample_period, progress)
+
+
+def simulate_events(scene: SceneOrName, duration: float, progress: Progress = None) -> runs.SimulatedRun:
+    """Simulate as `simulate` does, without any sample: for long runs, and where events say all."""
+    return runs.simulate_events(scene_of(scene), duration, progress)

@@ -1,3 +1,3 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Closed-form motion of one linear mode, and its guaranteed first roots.  Knows no friction and no axis."""
+"""The motion of one linear mode in closed form, and its first roots.  Knows no friction and no axis."""

@@ -7,14 +7,13 @@ cases, so that none divides by what vanishes:
 
 * a short span takes the power series of the equation at the five nodes of Gauss and Legendre's rule;
 * a swing is a polynomial and a wave Re Z e^(λt), whose products have closed integrals;
-* two real eigenvalues far apart are `far_apart`'s, and near critical damping the square is `critical_square`'s.
+* two real eigenvalues far apart are `far_apart`'s, and near critical damping the square is `far_apart`'s.
 """
 
 import math
 
 from ..core.hot_path import compiled
-from .critical_square import free_square
-from .far_apart import far_apart
+from .far_apart import far_apart, free_square
 from .oscillator import Oscillator, impulse
 
 _SHORT = 0.15        # (|γ| + |ν|) t up to which five nodes and ten powers are exact to rounding

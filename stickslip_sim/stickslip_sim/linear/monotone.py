@@ -6,8 +6,7 @@ import math
 
 from ..core.hot_path import compiled, inlined
 from .oscillator import Oscillator, integrals, short_integrals
-from .root_steps import EPSILON, ITERATIONS, householder, householder_settles
-from .zeros import finite_horizon, first_zero, next_zero
+from .zeros import EPSILON, ITERATIONS, finite_horizon, first_zero, householder, householder_settles, next_zero
 
 
 @compiled

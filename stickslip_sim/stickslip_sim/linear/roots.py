@@ -9,15 +9,15 @@ Three arguments cover every guard of a linear mode; none of them scans:
    sign at the two ends decides whether it has a root between them, and a bracketed Newton step finds it.  The zeros of
    a free motion are at least half a period apart (an over-damped one has one at most): a derivative that is positive
    from the start on, and positive at a time within half a period, was positive all the way.
-3. *Safe steps* (`polynomials.safe_step`): when |f″| <= M from t on, f cannot vanish before the positive root d of
+3. *Safe steps* (`zeros.safe_step`): when |f″| <= M from t on, f cannot vanish before the positive root d of
    f(t) + f′(t) d − M d²/2 = 0.  Steps of that length never pass a root, and converge to a simple one quadratically.
 
-`polynomials.first_crossing` is exact for polynomials of degree two.  "Never" is infinity.
+`zeros.first_crossing` is exact for polynomials of degree two.  "Never" is infinity.
 
-What the arguments assume of floating point (tests/linear/test_floating_point.py holds each to it):
+What the arguments assume of floating point (tests/linear/test_linear.py holds each to it):
 
 a. *Overflow*: nothing is evaluated where a growing mode has grown by more than e⁶⁰⁰; it has left every bounded piece
-   before.  There a value is a number, a product of two is not, so that steps are taken in ratios (`root_steps`).
+   before.  There a value is a number, a product of two is not, so that steps are taken in ratios (`zeros`).
 b. *Underflow*: the rate of a mode that has died out may be 0 or have lost its digits.  A step from there is infinite
    or beyond the bracket, and the bracket is halved; a value that is not 0 never gives a step of 0.
 c. *When a root is accepted*: inside a bracket whose ends have been evaluated and differ in sign, or where argument 2
@@ -33,8 +33,7 @@ from typing import NamedTuple
 from ..core.hot_path import inlined
 from .monotone import bracket, first_guess, monotone_root, passage_under_ramp
 from .oscillator import Oscillator, short_integrals
-from .root_steps import householder, householder_settles
-from .zeros import finite_horizon, first_zero, half_period
+from .zeros import finite_horizon, first_zero, half_period, householder, householder_settles
 
 _DIRECT_STEPS = 8
 

@@ -24,12 +24,15 @@ from .style import (
     ORANGE,
     PURPLE,
     RED,
+    dress,
+    force_unit,
+    head,
     letter,
+    line,
     save,
     shortened,
     thinned,
 )
-from .time_panels import force_unit
 
 _LONGEST = 45   # letters of a name
 _COLOURS = RED, BLUE, GREEN, ORANGE, PURPLE
@@ -102,3 +105,25 @@ def _draw(panels: list[Axes], label: str, columns: Mapping[str, Numbers], known:
     if known:
         panels[3].plot(columns['velocity'] * MILLI, columns[known[-1]] * scale, color=colour, linewidth=width,
                        alpha=alpha)
+
+
+# A recorded run and its what-if run, one over the other.
+
+def plot_beside(recorded: Mapping[str, Numbers], other: Mapping[str, Numbers], title: str, path: Path | str) -> None:
+    """Draw position, velocity and friction force of both over time into `path` (.png, .pdf or .svg).
+
+    Columns are named as in `types.Sample`, and `time`; the first line of `title` is the heading.
+    """
+    figure = Figure(figsize=(11.0, 8.0), dpi=150, layout=ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.08))
+    panels = figure.subplots(3, 1, sharex=True)
+    scale, unit = force_unit(recorded['friction_force'], other['friction_force'])
+    for panel, name, factor, label in zip(panels, ('position', 'velocity', 'friction_force'), (MILLI, MILLI, scale),
+                                          ('position / mm', 'velocity / (mm/s)', f'friction force / {unit}')):
+        line(panel, recorded, name, factor, 'recorded', color=BLUE, linewidth=2.2)
+        line(panel, other, name, factor, 'what if', color=ORANGE, linewidth=1.3, linestyle=(0, (4, 1.5)))
+        panel.set_ylabel(label)
+        dress(panel)
+    panels[-1].set_xlabel('time / s')
+    figure.align_ylabels(panels)
+    head(panels[0], title)
+    save(figure, path)

@@ -5,6 +5,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,6 +29,7 @@ from .style import (
     letter,
     lines_by_label,
     save,
+    shortened,
     thinned,
 )
 
@@ -211,3 +213,62 @@ def _align_zeros(left: Axes, right: Axes) -> None:
     for panel, (low, high) in zip((left, right), ranges) if share < 1.0 else ():
         top = max(high, -low * (1.0 - share) / share) if share else high
         panel.set_ylim(-share / (1.0 - share) * top, top)
+
+
+# Runs below each other as in Fig. 4 of the paper: forces and velocity over time, friction over velocity.
+
+_ROW, _LEGEND = 2.05, 0.6   # in
+_ABOVE_LETTERS = 15.0        # points: a long name reaches over them
+_LONGEST = 100             # letters of a name over three panels
+ALIKE = 5.0               # so many times as large an extent, and rows do not share an axis
+
+
+def plot_side_by_side(motions: Mapping[str, DrawnMotion], *paths: Path | str) -> None:
+    """Draw a row for each run, by its name; runs that are alike have the same axes."""
+    with rc_context(JOURNAL):
+        figure = Figure(figsize=(DOUBLE_COLUMN, _ROW * len(motions) + _LEGEND),
+                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+        grid = figure.subplots(len(motions), 3, squeeze=False)
+        lengths = _lengths(list(motions.values()))
+        for row, (name, motion), length in zip(grid, motions.items(), lengths):
+            _draw_row(row, name, motion, length)
+        for column in grid.T:
+            _share(column, 'x')
+            _share(column, 'y')
+        for panel in grid[:-1].flat:
+            panel.set_xlabel('')
+        for panel, name in zip(grid.flat, ascii_lowercase):
+            letter(panel, name)
+        legend_below(figure, grid[0, 0], *grid[:, 2])
+        save(figure, *paths)
+
+
+def _lengths(motions: Sequence[DrawnMotion]) -> list[float]:
+    """Return how long to show each run, s: all as long as the longest if they are alike."""
+    lengths = [motion.opening[1] - motion.opening[0] for motion in motions]
+    longest = max(lengths)
+    return [longest] * len(lengths) if longest <= ALIKE * min(lengths) else lengths
+
+
+def _draw_row(row: Sequence[Axes], name: str, motion: DrawnMotion, length: float) -> None:
+    begin = motion.opening[0]
+    columns = part(motion.columns, begin, begin + length)
+    columns['time'] = columns['time'] - begin
+    forces(row[0], columns, 'time / s')
+    row[0].set_title(' ', loc='left', fontsize=8.0, pad=_ABOVE_LETTERS)   # room; the name itself widens no panel
+    row[0].annotate(shortened(name, _LONGEST), (0.0, 1.0), xytext=(0.0, _ABOVE_LETTERS), xycoords='axes fraction',
+                    textcoords='offset points', fontsize=8.0, in_layout=False)
+    legend = row[0].get_legend()
+    if legend is not None:
+        legend.remove()
+    velocity(row[1], columns, 'time / s')
+    friction_loop(row[2], motion)
+
+
+def _share(panels: Sequence[Axes], axis: str) -> None:
+    """Give panels the same limits, unless the lines of one would be lost in those of another."""
+    limits = np.array([getattr(panel, f'get_{axis}lim')() for panel in panels])
+    extents = np.ptp(limits, axis=1)
+    if extents.max() <= ALIKE * extents.min():
+        for panel in panels:
+            getattr(panel, f'set_{axis}lim')(limits[:, 0].min(), limits[:, 1].max())

@@ -12,10 +12,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .drawn_run import DrawnRun, TimeWindow
-from .run_panels import WindowPanels
-from .style import GREY, RED, save
-from .time_panels import dress, head
+from .run_panels import DrawnRun, TimeWindow, WindowPanels
+from .style import GREY, RED, dress, head, save
 
 _WIDTH, _WIDTH_OF_TWO = 11.0, 15.0            # in
 _DPI = 120

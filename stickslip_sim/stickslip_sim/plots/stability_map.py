@@ -5,7 +5,7 @@
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from string import ascii_uppercase
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -21,10 +21,25 @@ from matplotlib.ticker import LogLocator
 from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
-from ..simulation.cycles import SWINGS_ON
+from ..figures.cycles import SWINGS_ON
 from .paper_panels import DrawnMotion, phase_plane
-from .scale import Scale
-from .style import BLACK, DOUBLE_COLUMN, GREY, JOURNAL, RED, SINGLE_COLUMN, legend_of, legend_outside, save
+from .style import (
+    BLACK,
+    BLUE,
+    DOUBLE_COLUMN,
+    GREEN,
+    GREY,
+    JOURNAL,
+    MILLI,
+    ORANGE,
+    RED,
+    SINGLE_COLUMN,
+    Scale,
+    legend_of,
+    legend_outside,
+    letter,
+    save,
+)
 
 PLAIN_MOTIONS = ('smooth sliding', SWINGS_ON, 'at rest', 'failed', 'undecided')
 _PLAIN_COLOURS = ('#f2f2f2', '#c4c4c4', '#56B4E9', '#ffffff', '#ffffff')
@@ -101,8 +116,8 @@ def _map(panel: Axes, scales: tuple[Scale, Scale, Scale], field: Field, lines: L
     panel.set(xlim=(at[0][0], at[0][-1]), ylim=(at[1][0], at[1][-1]))
     if lines is not None:
         handles += _theory(panel, x, y, lines)
-    for pick, letter in zip(picks, ascii_uppercase):
-        _mark(panel, x.shown(pick.x), y.shown(pick.y), letter)
+    for pick, name in zip(picks, ascii_uppercase):
+        _mark(panel, x.shown(pick.x), y.shown(pick.y), name)
     legend_outside(panel.figure, 'upper left', handles, [str(handle.get_label()) for handle in handles], ncols=2)
 
 
@@ -134,17 +149,54 @@ def _theory(panel: Axes, x: Scale, y: Scale, lines: Lines) -> Iterator[Artist]:
         yield Line2D([], [], color=BLACK, linestyle=_LOST, linewidth=1.2, label='steady sliding loses stability')
 
 
-def _mark(panel: Axes, x: Numbers, y: Numbers, letter: str) -> None:
+def _mark(panel: Axes, x: Numbers, y: Numbers, name: str) -> None:
     panel.plot([x], [y], marker='o', markersize=3.5, markerfacecolor='white', markeredgecolor=BLACK, zorder=5)
-    panel.annotate(letter, (float(x), float(y)), xytext=(4.0, 3.0), textcoords='offset points', fontweight='bold',
+    panel.annotate(name, (float(x), float(y)), xytext=(4.0, 3.0), textcoords='offset points', fontweight='bold',
                    path_effects=[Stroke(linewidth=2.0, foreground='white'), Normal()])
 
 
 def _portraits(panels: list[Axes], picks: Sequence[Pick]) -> None:
-    for panel, pick, letter in zip(panels, picks, ascii_uppercase):
+    for panel, pick, name in zip(panels, picks, ascii_uppercase):
         phase_plane(panel, pick.motion)
         panel.set_xlabel('spring stretch / mm')
-        panel.set_title(letter, loc='left', fontsize=8.0, fontweight='bold')
+        panel.set_title(name, loc='left', fontsize=8.0, fontweight='bold')
     for panel in panels[len(picks):]:
         panel.set_visible(False)
     legend_of(panels[0].figure, 'upper left', *panels, ncols=3)
+
+
+# A bifurcation diagram: the last cycles and steady sliding over a parameter, for a journal's double column.
+
+_DOT: dict[str, Any] = {'linestyle': '', 'marker': 'o', 'markersize': 1.6, 'markeredgewidth': 0.0}
+
+
+def plot_bifurcation(over: Scale, cycles: Numbers, sliding: Numbers, path: Path | str) -> None:
+    """Draw drive force and jump of each cycle, and steady sliding, over a parameter; SI units.
+
+    Rows of `cycles`: value, drive force at break-away and at arrest, jump; of `sliding`: value, drive force, 1 where
+    it is stable.
+    """
+    with rc_context(JOURNAL):
+        figure = Figure(figsize=(DOUBLE_COLUMN, 2.9), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+        force, jump = figure.subplots(1, 2, sharex=True)
+        _forces(force, over, cycles, sliding)
+        jump.plot(over.shown(cycles[:, 0]), cycles[:, 3] * MILLI, color=GREEN, **_DOT)
+        jump.set(ylabel='jump from cycle to cycle / mm')
+        for panel, name in zip((force, jump), 'ab'):
+            panel.set(xlabel=over.label, xscale=over.kind)
+            panel.set_ylim(bottom=min(0.0, panel.get_ylim()[0]))
+            letter(panel, name)
+        legend_of(figure, 'upper left', force, ncols=4, markerscale=2.5)
+        save(figure, path)
+
+
+def _forces(panel: Axes, over: Scale, cycles: Numbers, sliding: Numbers) -> None:
+    values = over.shown(cycles[:, 0])
+    panel.plot(values, cycles[:, 1], color=ORANGE, label='at break-away', **_DOT)
+    panel.plot(values, cycles[:, 2], color=BLUE, label='at arrest', **_DOT)
+    for stable, style, label in ((True, 'solid', 'stable'), (False, (0, (3.0, 2.0)), 'unstable')):
+        shown = sliding.copy()
+        shown[shown[:, 2] != float(stable), 1] = float('nan')
+        panel.plot(over.shown(shown[:, 0]), shown[:, 1], color=BLACK, linestyle=style, linewidth=1.2,
+                   label=f'steady sliding, {label}')
+    panel.set(ylabel='drive force / N')

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """How all pictures look: colours, lines, files.  Without matplotlib's global state, so that no display is needed."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -14,6 +14,7 @@ from matplotlib.figure import Figure, SubFigure
 
 from ..core.arrays import Numbers
 from ..core.types import Mode
+from ..figures.catalogue import in_words, read_in
 
 # Okabe and Ito's colours, which stay apart for colour-blind eyes
 BLACK, ORANGE, SKY, GREEN = '#222222', '#E69F00', '#56B4E9', '#009E73'
@@ -93,3 +94,102 @@ def letter(panel: Axes, text: str) -> None:
     """Name a panel in its upper left corner, outside."""
     panel.annotate(f'({text})', (0.0, 1.0), xytext=(-26.0, 5.0), xycoords='axes fraction',
                    textcoords='offset points', fontweight='bold', fontsize=8.5)
+
+
+# A panel over time: its lines, its look, the title above.
+
+_KILO_FROM = 1e4     # N: larger forces are shown in kN
+_LONGEST = 70        # letters of a heading
+
+
+def force_unit(*forces: Numbers) -> tuple[float, str]:
+    """Return the scale and the unit in which forces (N) are shown."""
+    known = (force[np.isfinite(force)] for force in forces)
+    largest = max((float(np.abs(force).max()) for force in known if len(force)), default=0.0)
+    return (1e-3, 'kN') if largest >= _KILO_FROM else (1.0, 'N')
+
+
+def line(panel: Axes, samples: Mapping[str, Numbers], name: str, scale: float, label: str, **look: Any) -> None:
+    """Draw a column over time; one of NaN was not measured."""
+    if np.isnan(samples[name]).all():
+        return
+    time, values = thinned(samples['time'], samples[name])
+    panel.plot(time, values * scale, label=label, **look)
+
+
+def dress(panel: Axes) -> None:
+    """Give a panel over time its grid and legend."""
+    if not panel.has_data():
+        panel.text(0.5, 0.5, 'not measured', transform=panel.transAxes, ha='center', va='center', color=GREY)
+    panel.spines[['top', 'right']].set_visible(False)
+    panel.grid(axis='both', color='#dddddd', linewidth=0.6)
+    panel.set_axisbelow(True)
+    panel.margins(x=0.0)
+    if panel.get_legend_handles_labels()[0]:
+        panel.legend(loc='lower right', bbox_to_anchor=(1.0, 0.98), ncols=4, frameon=False, fontsize=9,
+                     borderaxespad=0.0, handlelength=2.2)
+
+
+def head(first: Axes, title: str) -> None:
+    """Write a title of up to three lines above the first panel; the first line is the heading."""
+    heading, _, rest = title.partition('\n')
+    first.set_title(shortened(heading, _LONGEST), loc='left', fontsize=14, fontweight='bold',
+                    pad=(22, 42, 56)[min(title.count('\n'), 2)])
+    first.annotate(rest, (0.0, 1.0), xytext=(0.0, 25.0), xycoords='axes fraction', textcoords='offset points',
+                   fontsize=10, color=GREY, in_layout=False)
+
+
+# An axis of a picture for any parameter: in the unit that people use, named as in a scene file.
+
+_SHOWN = {'ms': ('ms', MILLI), 'N/m': ('N/µm', 1e-6)}   # but for those of all texts
+
+
+def unit_read(unit: str, values: Numbers) -> str:
+    """Return the unit that values (SI) are read in: ms for times most of which are below a second."""
+    known = values[np.isfinite(values)]
+    return 'ms' if unit == 's' and len(known) and float(np.median(known)) < 1.0 else unit
+
+
+def labelled(words: str, unit: str) -> str:
+    """Return words with the unit of their numbers, as at an axis or above a column: speed / (mm/s)."""
+    return f'{words} / ({unit})' if '/' in unit or ' ' in unit else f'{words} / {unit}' if unit else words
+
+
+class Scale(NamedTuple):
+    """A parameter or a figure: its name, its SI unit, whether its axis is logarithmic.
+
+    The unit `ms` means seconds that are read in ms.  `place` says where an element of a list is.
+    """
+
+    name: str
+    unit: str
+    log: bool = False
+    place: str = ''
+
+    def shown(self, values: Numbers | float) -> Numbers:
+        """Return SI values in the unit of the picture."""
+        return np.asarray(values) * self._read_in[1]
+
+    def edges(self, values: Numbers) -> Numbers:
+        """Return where the cells about increasing values begin and end, in the unit of the picture.
+
+        They meet half way on this scale; the outermost end at their values.
+        """
+        places = np.log(self.shown(values)) if self.log else self.shown(values)
+        edges = np.concatenate([places[:1], 0.5 * (places[1:] + places[:-1]), places[-1:]])
+        return np.asarray(np.exp(edges)) if self.log else edges
+
+    @property
+    def label(self) -> str:
+        """The text at the axis."""
+        words = in_words(self.name.removeprefix('axis.')) + (f' at {self.place}' if self.place else '')
+        return labelled(words, self._read_in[0])
+
+    @property
+    def _read_in(self) -> tuple[str, float]:
+        return _SHOWN.get(self.unit) or read_in(self.unit)
+
+    @property
+    def kind(self) -> str:
+        """The name of matplotlib for the scale."""
+        return 'log' if self.log else 'linear'

@@ -16,8 +16,8 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import MaxNLocator
 
 from ..core.arrays import Numbers
-from .scale import Scale, in_words
-from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, SKY, legend_of, letter, save
+from ..figures.catalogue import in_words
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, SKY, Scale, legend_of, letter, save
 
 _MOST_BINS = 30   # a square root of the points, where that is less
 _NARROW = 1e-6   # of its size: a figure that spreads less is drawn as one value, in a range of 1 %

@@ -1,3 +1,3 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The real-time core, without ROS: pacing, the step loop, command slots, timing statistics, the verdict."""
+"""Steps that keep the time of a clock, without ROS: pacing, commands, timing statistics.  The node is in `ros`."""

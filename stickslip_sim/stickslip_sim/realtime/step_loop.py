@@ -14,14 +14,11 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 from ..core.errors import SolverError
-from ..rig import Rig, StepResult
-from .command_inputs import CommandInputs, CommandTotals
-from .command_slot import CommandSlot
-from .core_share import CoreShare
-from .pacing import StepClock, wake_precisely
+from ..simulation import Rig, StepResult
+from .commands import CommandInputs, CommandSlot, CommandTotals, Watchdog
+from .pacing import CoreShare, StepClock, wake_precisely
 from .scheduling import Scheduling, StepThread
 from .timing_statistics import TimingStatistics
-from .watchdog import Watchdog
 
 _IDLE = 0.05            # s between two looks at whether to stop while time stands still
 _PATIENCE = 5.0         # s that a request waits for its boundary

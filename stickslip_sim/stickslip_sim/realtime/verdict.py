@@ -5,6 +5,7 @@
 from typing import NamedTuple
 
 from ..scene.model import Scene, TimingSettings
+from ..simulation import DRIVE_FAILED
 from .pacing import PacingCounters
 from .step_loop import StepLoop
 from .timing_statistics import TimingStatistics
@@ -57,3 +58,36 @@ def _commands(loop: StepLoop) -> str:
     totals = loop.command_totals
     return (f'commands: {totals.received} received, {totals.refused} refused, {totals.lost} lost, {totals.limited}'
             f' limited, {totals.timed_out} time-out{"" if totals.timed_out == 1 else "s"}')
+
+
+# Commands that were not taken since the report before: of which kind, how many, and why.
+
+class Refusal(NamedTuple):
+    """Commands of one kind that were refused at one place, and why the latest of them was."""
+
+    name: str
+    reason: str
+    number: int
+
+
+class Refusals:
+    """Looks at where commands arrive, and at the drive, which takes none after a time-out with on_timeout: fault."""
+
+    def __init__(self, loop: StepLoop) -> None:
+        self._loop = loop
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew, as the counters do."""
+        self._known = [0] * len(self._so_far())
+
+    def look(self) -> list[Refusal]:
+        """Return what was refused since the look before."""
+        so_far = self._so_far()
+        new = [refusal._replace(number=refusal.number - known) for refusal, known in zip(so_far, self._known)]
+        self._known = [refusal.number for refusal in so_far]
+        return [refusal for refusal in new if refusal.number > 0]
+
+    def _so_far(self) -> list[Refusal]:
+        return [*(Refusal(slot.name, slot.last_refusal, slot.refused) for slot in self._loop.slots),
+                Refusal('velocity', DRIVE_FAILED, self._loop.rig.counts.refused)]

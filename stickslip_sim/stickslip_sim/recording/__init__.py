@@ -1,20 +1,18 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs on disk as ROS bags: written by the node and by the offline tool, read back whole or cut off."""
+"""Runs on disk: written by the node and the tool, read back whole or cut off.  The file format is in `bags`."""
 
-from .bag import BagWriter, Split
-from .measured_bag import write_measured
-from .measured_run import MeasuredRun
+from ..bags.bag import BagWriter, Split
+from ..bags.schemas import MessageCodec, Schema, flat_layout, schema
+from ..bags.topic_columns import RecordedMessage
+from ..bags.topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded_topics
+from .measured_run import MeasuredRun, write_measured
 from .offline_bag import OfflineBag, samples_of, write_bag
-from .opening import open_bag
+from .opening import open_bag, read_run
 from .reader import Bag
 from .recorded_run import RecordedRun
+from .recordings import RecorderThread
 from .run import RunFacts, checkpoint_file, open_run, receipt_file
-from .run_reading import read_run
-from .schemas import MessageCodec, Schema, flat_layout, schema
-from .thread import RecorderThread
-from .topic_columns import RecordedMessage
-from .topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded_topics
 
 __all__ = [
     'DIAGNOSTICS',

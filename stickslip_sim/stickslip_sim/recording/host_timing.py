@@ -6,9 +6,8 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from ..core.arrays import Numbers
-from ..rig.marks import Mark
-from ..runs import Columns
+from ..core.arrays import Columns, Numbers
+from ..simulation.step_result import Mark
 
 _USUAL = 5.0      # median intervals: longer is a gap between commands
 _FEWEST = 20      # intervals of which one is usual

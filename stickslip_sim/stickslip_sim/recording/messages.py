@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bags.message_layout import Layout
+from ..bags.schemas import flat_layout
+from ..bags.topics import Topic
 from ..core.time_grid import NANOSECONDS
 from ..core.types import Event, Sample
 from ..core.version import __version__
-from .message_layout import Layout
 from .run import RunFacts
-from .schemas import flat_layout
-from .topics import Topic
 
 Fields = dict[str, object]
 

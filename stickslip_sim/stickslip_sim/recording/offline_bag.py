@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes the bag of an offline run: topics, fields and conventions of the node's, stamps are simulation time."""
 
+import shutil
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -11,18 +13,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bags import topics
+from ..bags.mcap_chunk import MessageBlock
+from ..bags.message_layout import MessageRows, record_of
+from ..bags.schemas import MessageCodec, flat_layout
+from ..bags.topics import Topic
+from ..core.arrays import Columns
 from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Mode, Sample
-from ..runs import Columns
+from ..runs import SimulatedRun, simulate
 from ..runs.simulated import columns_of_rows
-from . import messages, topics
-from .mcap_chunk import MessageBlock
-from .message_record import record_of
-from .message_rows import MessageRows
+from . import messages
 from .messages import Packer, numbers_of_steps
 from .run import RunFacts, open_run, receipt_file
-from .schemas import MessageCodec, flat_layout
-from .topics import Topic
 
 CHANNELS = {topic: number for number, topic in enumerate(topics.RECORDED, 1)}
 _BLOCK = 10_000   # samples
@@ -49,6 +52,20 @@ def write_blocks(folder: Path | str, facts: RunFacts, blocks: Iterable[Columns],
         return bag.close(receipt)
     except BaseException:
         bag.abandon()
+        raise
+
+
+def write_run(folder: Path | str, run: SimulatedRun) -> None:
+    """Write a run as a bag, step by step; one that was begun vanishes on any error.  Raises RecordingError."""
+    step = run.scene.time.step
+    if run.sample_period != step:
+        again = simulate(run.scene, run.duration, step)
+        run = replace(again, receipt={**run.receipt, **again.receipt})
+    facts = RunFacts.of(run.scene, run.duration, run.sample_period)
+    try:
+        write_blocks(folder, facts, run.sample_blocks(), run.events, run.receipt)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
         raise
 
 

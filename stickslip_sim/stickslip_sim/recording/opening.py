@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 from mcap.records import Attachment, Channel, Footer, McapRecord, Metadata, Schema
 
+from ..bags.bag import METADATA, NEXT_FILE
+from ..bags.mcap_chunk import Messages
+from ..bags.mcap_records import contents
 from ..core.errors import RecordingError, RecordingWarning
-from .bag import METADATA, NEXT_FILE
-from .mcap_records import contents
-from .message_places import Messages
+from .measured_run import MEASURED, MeasuredRun
 from .reader import OVERHEAD, Bag
+from .recorded_run import RecordedRun
 
 MOST_BESIDE = 64 << 20   # bytes of all that a file holds beside messages
 _PART = re.compile(r'(?P<name>.*)_(?P<number>0|[1-9]\d{0,8})\.mcap')
@@ -26,7 +28,7 @@ def open_bag(path: Path | str) -> Bag:
     goes, with a RecordingWarning.
     """
     bag = bag_in(path)
-    for shortfall in shortfalls(bag):
+    for shortfall in bag.shortfalls:
         warnings.warn(shortfall, RecordingWarning, stacklevel=2)
     return bag
 
@@ -68,16 +70,6 @@ def _count(bag: Bag, file: Path, messages: Messages, channels: dict[int, str]) -
             raise RecordingError(f'{file}: damaged: a message on channel {channel}, which is nowhere')
         if count:
             bag.counts[channels[channel]] += count
-
-
-def shortfalls(bag: Bag) -> tuple[str, ...]:
-    """Return what is missing of a bag, for people."""
-    if bag.is_complete:
-        return ()
-    if bag.next_file:
-        return (f'{bag.path} {bag.continuation}',)
-    return (f'{bag.path} has no end: cut off, or still being written; {sum(bag.counts.values())} messages are'
-            ' whole, and metadata.yaml does not count them',)
 
 
 def _note(bag: Bag, record: McapRecord, names: dict[int, str], channels: dict[int, str]) -> None:
@@ -143,3 +135,19 @@ def goes_on_empty(part: Path) -> bool:
     match = _PART.fullmatch(part.name)
     behind = part.with_name(f'{match["name"]}_{int(match["number"]) + 1}.mcap') if match else part
     return behind.is_file() and behind.stat().st_size == 0
+
+
+# Reads any run folder: of a simulation, or of a measurement.
+
+def read_run(path: Path | str) -> RecordedRun:
+    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
+
+    A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
+    goes, with a RecordingWarning; its `notes` say so too.  One that was measured is a MeasuredRun.
+    """
+    bag = bag_in(path)
+    is_measured = bag.metadata.get(METADATA, {}).get('origin') == MEASURED
+    run = MeasuredRun(bag, path) if is_measured else RecordedRun(bag, path)
+    for note in bag.shortfalls:
+        warnings.warn(note, RecordingWarning, stacklevel=2)
+    return run

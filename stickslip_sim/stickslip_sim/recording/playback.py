@@ -14,14 +14,14 @@ from mcap.records import Attachment, Channel, ChunkIndex, Footer, McapRecord, Me
 from rosbags.rosbag2 import ReaderError
 from rosbags.rosbag2.metadata import parse_qos
 
+from ..bags.bag import METADATA, is_by_wall_clock
+from ..bags.mcap_records import CUT_OFF, chunk_at, records, summary_of
+from ..bags.topic_columns import RecordedMessage
+from ..bags.topics import QosProfile
 from ..core.errors import InputError, RecordingError
 from ..scene import Scene, parse_scene
-from .bag import METADATA, is_by_wall_clock
-from .mcap_records import CUT_OFF, chunk_at, records, summary_of
 from .opening import files_of, goes_on_empty
 from .run import SCENE_FILE
-from .topic_columns import RecordedMessage
-from .topics import QosProfile
 
 _DEFAULT_QOS = QosProfile(10)    # as rosbag2 plays what has none, or several
 

@@ -18,17 +18,17 @@ from mcap.records import Channel, Message
 from numpy.typing import NDArray
 from rosbags.typesys.store import Typestore
 
+from ..bags.bag import METADATA, is_by_wall_clock
+from ..bags.mcap_chunk import Messages
+from ..bags.mcap_records import contents, records
+from ..bags.message_layout import Layout, layout_of
+from ..bags.schemas import store_of, understood
+from ..bags.topic_columns import Block, RecordedMessage, TopicColumns, column_blocks
+from ..bags.topics import MODE_EVENT, Topic
 from ..core.errors import InputError, RecordingError, one_line
 from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
-from .bag import METADATA, is_by_wall_clock
-from .mcap_records import contents, records
-from .message_layout import Layout, layout_of
-from .message_places import Messages
 from .run import RECEIPT_FILE, SCENE_FILE
-from .schemas import store_of, understood
-from .topic_columns import Block, RecordedMessage, TopicColumns, column_blocks
-from .topics import MODE_EVENT, Topic
 
 MOST_TOPIC_BYTES = 4 << 30    # bytes of a topic in memory at once
 OVERHEAD = 300         # bytes of a message there beside its own
@@ -60,6 +60,16 @@ class Bag:
         is_beside = os.path.isfile(self.files[-1].parent / os.path.basename(self.next_file))
         why = 'beside it; give the folder of the bag to have all' if is_beside else 'which is not there'
         return f'goes on in {one_line(self.next_file)}, {why}' if self.next_file else ''
+
+    @property
+    def shortfalls(self) -> tuple[str, ...]:
+        """What is missing of it, for people."""
+        if self.is_complete:
+            return ()
+        if self.next_file:
+            return (f'{self.path} {self.continuation}',)
+        return (f'{self.path} has no end: cut off, or still being written; {sum(self.counts.values())} messages are'
+                ' whole, and metadata.yaml does not count them',)
 
     @property
     def receipt(self) -> dict[str, Any]:

@@ -3,30 +3,58 @@
 """A recorded run: states at its steps, events at their exact times, the scene that travels in it."""
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ..bags.topics import (
+    DRIVE_VELOCITY,
+    FRICTION_FORCE,
+    MODE_EVENT,
+    PARAMETER_EVENTS,
+    RIG_EVENT,
+    SLIDER_STATE,
+    TIMING,
+    Topic,
+)
+from ..core.arrays import Columns
 from ..core.errors import RecordingError, one_line
 from ..core.types import Event, Mode
-from ..rig import RigEventKind
-from ..rig.marks import Mark, TimedRigEvent, marks_of_events, marks_of_faults
-from ..runs import COLUMNS, Columns
-from ..runs.normal_force import recorded_normal_force
+from ..figures.cycles import Summary, summary
+from ..runs import COLUMNS
+from ..runs.run import recorded_normal_force
 from ..runs.samples import MOST_HELD, joined
 from ..runs.views import Views
 from ..scene import Scene
-from ..simulation.cycles import Summary, summary
+from ..simulation import RigEventKind
+from ..simulation.step_result import Mark, TimedRigEvent, marks_of_events, marks_of_faults
 from .host_timing import LATE_FIELDS, gap_marks, late_marks
-from .normal_force_column import is_changed
-from .opening import shortfalls
-from .paired_steps import of_the_same_steps, paired_blocks
 from .reader import EVENT_FIELDS, Bag
-from .run_outline import RunOutline, check_samples, outline_of
-from .topics import DRIVE_VELOCITY, FRICTION_FORCE, MODE_EVENT, RIG_EVENT, SLIDER_STATE, TIMING, Topic
+from .run_outline import RunOutline, check_samples, of_the_same_steps, outline_of, paired_blocks
+
+# The normal force beside the friction forces of a bag, where its scene lets it vary: no message has it.
+
+def is_changed(bag: Bag) -> bool:
+    """Whether parameters were changed while a run was recorded."""
+    return any(bag.counts.get(name) for name, kind in bag.topics.items() if kind == PARAMETER_EVENTS.type)
+
+
+def normal_force_beside(bag: Bag, topic: str) -> Callable[[Mapping[str, Any]], Columns]:
+    """Return what makes the column for columns of a topic; none for other topics, or where N does not vary."""
+    try:
+        varies = bag.topics[bag.resolved(topic)] == FRICTION_FORCE.type and bag.scene.normal_load is not None
+    except RecordingError:   # no scene that this version can read
+        varies = False
+    if not varies:
+        return lambda _: {}
+    changed = is_changed(bag)
+    return lambda columns: recorded_normal_force(bag.scene, {
+        'time': np.asarray(columns['log_time']) / 1e9, 'friction_force': np.asarray(columns['force']),
+        'friction_coefficient': np.asarray(columns['coefficient'])}, changed)
+
 
 _STATE = ('time', 'step', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
           'rest_time', 'mode', 'direction')
@@ -47,7 +75,7 @@ class RecordedRun(Views):
 
     def __init__(self, bag: Bag, path: Path | str) -> None:
         self.bag = bag
-        self.notes = shortfalls(bag)
+        self.notes = bag.shortfalls
         self.is_complete = bag.is_complete
         self.is_changed = is_changed(bag)
         self._given = path

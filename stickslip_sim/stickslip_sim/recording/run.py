@@ -11,12 +11,12 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..bags.bag import ONE_FILE, BagWriter, Split
+from ..bags.metadata import ros_distro
+from ..bags.topics import Topic, recorded_topics
 from ..core.hot_path import hot_path
 from ..core.version import __version__
-from ..runs.receipt import plain
-from .bag import ONE_FILE, BagWriter, Split
-from .metadata import ros_distro
-from .topics import Topic, recorded_topics
+from ..report.values import plain
 
 if TYPE_CHECKING:
     from ..scene import Scene

@@ -40,7 +40,7 @@ def simulate(
     except ImportError:
         raise InputError('mpmath', None, 'installed for the reference', 'pip install mpmath') from None
     from .automaton import run
+    from .exact_run import rounded
     from .problem import problem
-    from .rounding import rounded
 
     return rounded(run(problem(axis, initial, drive, force, load), duration, digits))

@@ -15,9 +15,9 @@ from .flow import Flow, State
 from .inputs import Input, Signal
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, Yield, word
 from .physics import Physics
-from .precision import working
 from .problem import Problem
 from .search import HOLDS, LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, TURNS, Step, slip_step, stick_step, yield_step
+from .series import working
 
 GUARD_DIGITS = 12
 UNSEEN_COAST = mpf(10) ** -15  # |R - B| against N mu_b after a compliant break-away

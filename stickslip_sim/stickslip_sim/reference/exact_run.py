@@ -8,6 +8,7 @@ from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import mpmath
 from mpmath import mpf
 
 from ..core import types
@@ -15,7 +16,8 @@ from .flow import Flow, State, after
 from .inputs import Input, Signal
 from .modes import Mode, word
 from .physics import Physics
-from .precision import working
+from .result import Final, ReferenceRun
+from .series import working
 
 
 @dataclass(frozen=True)
@@ -112,3 +114,44 @@ def sample(physics: Physics, mode: Mode, t: mpf, state: State) -> Sample:
         physics.drive_force(state),
         physics.friction(mode, state),
     )
+
+
+# From multiple precision to the floats of the package.
+
+_KINDS = {kind.name.lower(): kind for kind in types.EventKind}
+
+
+def rounded(run: Run) -> ReferenceRun:
+    """Return the run with its numbers rounded to floats."""
+    with mpmath.workdps(run.digits):
+        return ReferenceRun([_event(event) for event in run], _final(run), run)
+
+
+def _event(event: Event) -> types.Event:
+    second, fraction = split(event.time)
+    return types.Event(
+        second,
+        fraction,
+        _KINDS[event.kind],
+        event.mode,
+        event.direction,
+        float(event.position),
+        float(event.velocity),
+        float(event.drive_position),
+        float(event.drive_force),
+        float(event.friction_force),
+        float(event.static_coefficient),
+        float(event.rest_time),
+    )
+
+
+def split(time: mpf) -> tuple[float, float]:
+    """Return whole seconds and the rest, which is the nearest float below 1 s."""
+    second = mpmath.floor(time)
+    fraction = float(time - second)
+    return (float(second), fraction) if fraction < 1.0 else (float(second) + 1.0, 0.0)
+
+
+def _final(run: Run) -> Final:
+    end = run.final
+    return Final(float(end.position), float(end.velocity), float(end.drive_position), end.mode)

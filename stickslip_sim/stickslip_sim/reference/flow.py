@@ -22,8 +22,7 @@ from typing import NamedTuple
 from mpmath import mp, mpf, sqrt
 
 from .inputs import Signal
-from .precision import to_decimal
-from .series import Series, combine, integral, series, value
+from .series import Series, combine, integral, series, to_decimal, value
 
 SPAN = 4  # a step is at most SPAN / ρ: longer ones need more terms, shorter ones are more
 _UNHEARD = 4  # digits of rounding in the amplitude of a ringing contact

@@ -12,8 +12,7 @@ from typing import NamedTuple
 from mpmath import cos, inf, mpf, pi, sin
 
 from ..core.input_profile import InputProfile
-from .precision import to_decimal
-from .series import Series, series
+from .series import Series, series, to_decimal
 
 
 class Segment(NamedTuple):

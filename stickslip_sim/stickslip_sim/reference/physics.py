@@ -18,10 +18,8 @@ from mpmath import mp, mpf, sqrt
 
 from .flow import Expansion, Flow, State
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, Yield
-from .precision import summed_rounding, to_binary, to_decimal
-from .problem import Line, Problem
-from .series import Series, combine, integral
-from .side import Side
+from .problem import Line, Problem, Side
+from .series import Series, combine, integral, summed_rounding, to_binary, to_decimal
 
 _ONE = mpf(1)
 _TIE_ORDER = 6  # derivatives that may decide a tie under sinusoids

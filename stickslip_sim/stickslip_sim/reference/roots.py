@@ -21,8 +21,7 @@ from decimal import Decimal
 
 from mpmath import ldexp, mp, mpf
 
-from .precision import summed_rounding, to_decimal
-from .series import reach, scaled
+from .series import reach, scaled, summed_rounding, to_decimal
 
 _SPARE = 28  # bits, against the rounding of some thousand sums
 _DIGITS = 0.302  # in a bit, and a little more

@@ -13,9 +13,8 @@ from mpmath import mp, mpf
 from .flow import Expansion, Flow, Place, State, after
 from .modes import ACCELERATE, COAST, DECELERATE, Slip, Stick, Yield
 from .physics import Physics
-from .precision import summed_rounding, to_decimal
 from .roots import first_root
-from .series import Series, combine, derivative, product, reach, scaled, value
+from .series import Series, combine, derivative, product, reach, scaled, summed_rounding, to_decimal, value
 
 LIMIT, HOLDS, TURNS, SURPLUS_UP, SURPLUS_DOWN, SPEED_UP, SPEED_DOWN = (
     'limit',

@@ -4,12 +4,67 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from decimal import Decimal
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from decimal import (
+    ROUND_HALF_EVEN,
+    Context,
+    Decimal,
+    DivisionByZero,
+    InvalidOperation,
+    Overflow,
+    localcontext,
+)
+from typing import TypeVar
 
-from mpmath import mpf
+import mpmath
+from mpmath import mp, mpf
 
-from .precision import to_binary, to_decimal
+# The numbers of the reference, all of the same number of digits: mpmath's, and decimal's for the power series.
+#
+# The sums over a series are nearly all of the work, and a sum or product of decimal's, which are made in C, takes a
+# tenth of the time of one of mpmath's.  What needs more than sums, products and quotients is in mpmath's.
+#
+# Each step adds to the state a few roundings of the terms that it sums, and the flow hands them on: after n steps, a
+# few n of them.  `summed_rounding` allows ten million, those of some million steps.  It is 10^-5 of what is promised,
+# since the working digits are twelve more.
+
+_Number = TypeVar('_Number', mpf, Decimal)
+_OF_ALL_STEPS = 7  # digits
+_LARGEST = 999_999  # power of ten
+_SPARE = 2  # digits: mpmath counts in bits, and its numbers of so many digits are up to a digit finer
+
+
+@contextmanager
+def working(digits: int) -> Iterator[None]:
+    """Compute with so many digits; the default context of decimal has no say."""
+    context = Context(digits + _SPARE, ROUND_HALF_EVEN, Emin=-_LARGEST, Emax=_LARGEST, clamp=0, flags=[],
+                      traps=[InvalidOperation, DivisionByZero, Overflow])
+    with mpmath.workdps(digits), localcontext(context):
+        yield
+
+
+def summed_rounding(terms: _Number) -> _Number:
+    """Return the rounding that a sum of such terms may hold of all steps up to it."""
+    finer: int = 10 ** (mp.dps - _OF_ALL_STEPS)
+    return terms / finer
+
+
+def to_decimal(number: mpf) -> Decimal:
+    """Return a finite number of mpmath's as one of decimal's, rounded to the working precision; else ValueError."""
+    sign, mantissa, power, _ = number._mpf_
+    if power and not mantissa:   # so mpmath writes what is not finite
+        raise ValueError(f'a power series has finite numbers, not {number}')
+    whole, exponent = Decimal(-mantissa if sign else mantissa), int(power)
+    return whole * (1 << exponent) if exponent >= 0 else whole / (1 << -exponent)
+
+
+def to_binary(number: Decimal) -> mpf:
+    """Return a finite number of decimal's as one of mpmath's, rounded to the working precision."""
+    exponent = int(number.as_tuple().exponent)
+    whole = mpf(int(number.scaleb(-exponent)))
+    return whole * 10**exponent if exponent >= 0 else whole / 10**-exponent
+
 
 Series = list[Decimal]
 _ZERO, _ONE = Decimal(0), Decimal(1)

@@ -18,8 +18,7 @@ from decimal import Decimal
 
 from mpmath import exp, inf, isinf, mp, mpf
 
-from .precision import to_decimal
-from .series import Series, series
+from .series import Series, series, to_decimal
 
 _LAWS = ('constant', 'exponential', 'kato', 'hyperbolic', 'logarithmic')
 _ORDER = 70

@@ -11,20 +11,74 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import numpy as np
 import rclpy
+from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, SliderState
 
+from ..bags import topics
+from ..check.observed_run import Timing, timing_of
 from ..core.errors import RecordingError, StickslipError
 from ..core.types import Mode
-from ..recording import topics
-from ..recording.stamped_folder import stamped_folder
-from .demo_report import report
+from ..figures.catalogue import label_of, read_in, unit_of
+from ..figures.cycles import Summary
+from ..recording import read_run
+from ..recording.recordings import stamped_folder
 from .node.endpoints import publisher, subscription
+
+# What the demonstration prints about its recorded run: read back from the bag, with nothing else to go by.
+
+_PICTURE = 'run.png'
+_FIGURES = ('period', 'stick_time', 'slip_time', 'jump', 'peak_speed', 'break_away_force')
+
+
+def report(folder: Path) -> list[str]:
+    """Draw the picture of a run into its folder; return the lines to print about it."""
+    run = read_run(folder)
+    run.plot(folder / _PICTURE)
+    return [f'bag      {folder} ({sum(run.bag.counts.values())} messages)', f'picture  {folder / _PICTURE}',
+            *cycle_lines(run.summary), *timing_lines(run.bag.columns('/timing')),
+            *(real_time_lines(timing) if (timing := timing_of(run)) and run.is_complete else [])]
+
+
+def real_time_lines(timing: Timing) -> list[str]:
+    """Return whether the run kept real time, and what that means where it did not."""
+    late = ['the motion is right, the timing was late, as the machine had other work; where that matters,',
+            'lock-step is the way (-p time.mode:=lockstep, docs/hil.md): time waits for steps and controller']
+    return [f'verdict  {timing.verdict}', *(f'         {line}' for line in late if timing.valid is False)]
+
+
+def cycle_lines(figures: Summary) -> list[str]:
+    """Return the cycle figures."""
+    if figures.last is None:
+        return [f'cycles   none: {figures.motion}']
+    lines = [f'cycles   {figures.cycles}; of the last one:']
+    for name in _FIGURES:
+        unit, scale = read_in(unit_of(name))
+        lines.append(f'         {label_of(name):17} {getattr(figures.last, name) * scale:9.4g} {unit}')
+    return lines
+
+
+def timing_lines(windows: dict[str, NDArray[Any]]) -> list[str]:
+    """Return how the steps kept their time, from the seconds recorded."""
+    if not len(windows['steps']):
+        return ['timing   no second was completed']
+    micro = 1e6
+    return [
+        f'timing   {windows["steps"].sum()} steps of {windows["period"][0] * 1e3:g} ms; lateness'
+        f' p50 {np.nanmedian(windows["lateness_p50"]) * micro:.0f} µs,'
+        f' p99 {np.nanmedian(windows["lateness_p99"]) * micro:.0f} µs (median of the seconds),'
+        f' max {np.nanmax(windows["lateness_max"]) * micro:.0f} µs',
+        f'         cost p50 {np.nanmedian(windows["cost_p50"]) * micro:.0f} µs,'
+        f' p99 {np.nanmedian(windows["cost_p99"]) * micro:.0f} µs;'
+        f' {windows["total_overruns"][-1]} overruns, {windows["total_caught_up"][-1]} steps caught up',
+    ]
+
 
 DEMO_SCENE = 'paper_fig8'
 _PATIENCE = 30.0    # s for the node to appear, and to end

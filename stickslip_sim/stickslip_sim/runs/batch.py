@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..axis import Axis, InitialState, check_start
 from ..core.arrays import Numbers
 from ..core.errors import InputError
+from ..figures.rounds import period_repeats
 from ..solvers import exact
 from ..solvers.exact.axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures
 from ..solvers.exact.many_axes import SETTLED
@@ -33,7 +34,7 @@ _AT_A_TIME = 250    # axes that a thread takes
 
 @dataclass(frozen=True, slots=True)
 class BatchFigures:
-    """Arrays with one entry an axis; units and meaning are those of `simulation.cycles`: `Cycle` and `Summary`.
+    """Arrays with one entry an axis; units and meaning are those of `figures.cycles`: `Cycle` and `Summary`.
 
     Those from `direction` to `static_coefficient` are of the last complete cycle, NaN without one.
     """
@@ -44,7 +45,7 @@ class BatchFigures:
     final_mode: Numbers          # `types.Mode`
     first_break_away: Numbers    # s
     stick_share: Numbers
-    settled: NDArray[np.bool_]   # the last two periods differ by less than SETTLED of `simulation.cycles`
+    settled: NDArray[np.bool_]   # the last two periods differ by less than SETTLED of `figures.cycles`
     direction: Numbers
     rest_time: Numbers           # s
     slip_time: Numbers           # s
@@ -160,8 +161,7 @@ def new_rows(count: int, window: int = 0) -> Numbers:
 def figures_in(out: Numbers) -> BatchFigures:
     """Return the figures in rows that were filled by `solvers.exact.run_axes`."""
     columns: dict[str, Any] = {name: _figure(out, name) for name in BatchFigures.__slots__ if name != 'settled'}
-    change = np.abs(columns['period'] - _figure(out, 'period_before'))
-    columns['settled'] = change < SETTLED * columns['period']
+    columns['settled'] = period_repeats(_figure(out, 'period_before'), columns['period'], SETTLED)
     columns['complete'] = columns['complete'] == 1.0
     return BatchFigures(**columns)
 

@@ -2,22 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The receipt of an offline run: what ran, with which versions, what came out, what it cost.  JSON values only."""
 
-import math
-import platform
 import time
-from collections.abc import Mapping
-from enum import Enum
 from typing import Any
 
-import numpy
-
-from ..core.energy import EnergyBalance
-from ..core.hot_path import hot_path
-from ..core.types import Mode, Sample
-from ..core.version import __version__
+from ..core.types import EnergyBalance, Sample
+from ..figures.cycles import Summary
+from ..figures.wording import miss_note, touch_note
+from ..report.values import plain, versions
 from ..scene import Scene
-from ..simulation.cycles import Summary
-from .wording import miss_note, touch_note
 
 
 class CostMeter:
@@ -70,24 +62,3 @@ def profiles_from_files(scene: Scene) -> dict[str, Any]:
                                                  if f'{section}.{name}' in scene.values}}
                 for section, source in scene.sources.items()}
     return {'profiles': profiles} if profiles else {}
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of everything that the numbers depend on."""
-    return {'stickslip': __version__, 'python': platform.python_version(), 'numpy': numpy.__version__,
-            'hot_path': hot_path()}
-
-
-def plain(value: Any) -> Any:
-    """Turn named tuples into mappings, words and infinities into text."""
-    if isinstance(value, Enum):
-        return value.name if isinstance(value, Mode) else value.name.lower()
-    if isinstance(value, tuple) and hasattr(value, '_asdict'):
-        value = value._asdict()
-    if isinstance(value, Mapping):
-        return {plain(key): plain(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [plain(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return str(value)
-    return value

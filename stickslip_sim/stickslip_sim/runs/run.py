@@ -2,19 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run as one thing: the same to read whether it was simulated or recorded."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import wraps
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..core.arrays import Columns
 from ..core.types import Event, Sample
-from ..rig.marks import Mark
+from ..figures.cycles import Cycle, Summary
 from ..scene import Scene
-from ..simulation.cycles import Cycle, Summary
-
-Columns = dict[str, NDArray[np.float64]]
+from ..simulation.step_result import Mark
 
 COLUMNS = ('time', *Sample._fields[2:])   # of the samples of every run
 
@@ -119,3 +120,45 @@ class Run(Protocol):
         Without a window the last cycles of a long run are beside it.  Raises InputError for other endings, and for a
         window that is not in the run.
         """
+
+
+# What is found of a run once and kept as long as the run.
+
+_Found = TypeVar('_Found')
+
+
+def kept(find: Callable[[Run], _Found]) -> Callable[[Run], _Found]:
+    """Return a function that finds the same, but looks at each run only once; what it finds must not hold the run."""
+    known: WeakKeyDictionary[Run, _Found] = WeakKeyDictionary()
+
+    @wraps(find)
+    def kept_or_found(run: Run) -> _Found:
+        if run not in known:
+            known[run] = find(run)
+        return known[run]
+
+    return kept_or_found
+
+
+# The normal force on the slideway as a column beside the samples of a run, where it varies.
+
+LOAD_COLUMN = 'normal_force'
+
+
+def normal_force_of(scene: Scene, times: NDArray[np.float64]) -> Columns:
+    """Return the column of the normal force at times (s), N, as the scene has it; none where it does not vary."""
+    return {} if scene.normal_load is None else {LOAD_COLUMN: scene.normal_force.values_at(times)}
+
+
+def recorded_normal_force(scene: Scene, samples: Columns, is_changed: bool) -> Columns:
+    """Return the column of a recorded run, as `normal_force_of`.
+
+    Where a parameter was changed it is friction over its coefficient, NaN where that is 0.
+    """
+    column = normal_force_of(scene, samples['time'])
+    if not column or not is_changed:
+        return column
+    coefficient: NDArray[Any] = samples['friction_coefficient']
+    with np.errstate(all='ignore'):
+        ratio = np.abs(samples['friction_force']) / coefficient
+    return {LOAD_COLUMN: np.where(coefficient > 0.0, ratio, np.nan)}

@@ -11,17 +11,16 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.callbacks import Progress
+from ..core.arrays import Columns
 from ..core.errors import InputError
 from ..core.time_grid import decimal, instant_of, instants, multiples
-from ..core.types import Event, Instant, Mode, Sample
-from ..rig import Rig
-from ..rig.marks import Mark, marks_of_faults
+from ..core.types import Event, Instant, Mode, Progress, Sample
+from ..figures.cycles import Summary, summary
 from ..scene import Scene
-from ..simulation.cycles import Summary, summary
-from .normal_force import normal_force_of
+from ..simulation import Rig
+from ..simulation.step_result import Mark, marks_of_faults
 from .receipt import CostMeter, receipt_of
-from .run import Columns
+from .run import normal_force_of
 from .samples import GATHERED, MOST_HELD, HeldSamples, RemadeSamples, Samples
 from .views import Views
 

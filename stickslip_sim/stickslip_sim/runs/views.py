@@ -7,12 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ..core.picture_formats import check_picture_name
-from ..simulation.cycles import Cycle, cycle_figures
-from .frame import data_frame
-from .kept import kept
-from .normal_force import LOAD_COLUMN
-from .run import COLUMNS, Run
+from ..core.arrays import data_frame
+from ..core.paths import check_picture_name
+from ..figures.cycles import Cycle, cycle_figures
+from .run import COLUMNS, LOAD_COLUMN, Run, kept
 
 
 class Views:

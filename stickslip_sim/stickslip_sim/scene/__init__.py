@@ -1,18 +1,11 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes: everything that decides a run, as a ROS 2 parameter file that is read without ROS."""
+"""Scenes: everything that decides a run, as a ROS 2 parameter file.  Finding and loading files is in `inputs`."""
 
-from ..config.parameter import Parameter, When
-from .load import (
-    changed,
-    parse_override,
-    parse_scene,
-    scene_from_values,
-    scene_names,
-)
-from .model import CommandSettings, RecordSettings, Scene, TimeSettings
+from .load import changed, parse_override, parse_scene, scene_from_values, scene_names
+from .model import CommandSettings, RecordSettings, Scene, SolverSettings, TimeSettings
+from .parameter import Parameter, When
 from .schema import PARAMETERS
-from .solver import SolverSettings
 
 __all__ = [
     'PARAMETERS', 'CommandSettings', 'Parameter', 'RecordSettings', 'Scene', 'SolverSettings', 'TimeSettings',

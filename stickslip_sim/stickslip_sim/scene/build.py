@@ -10,19 +10,25 @@ from typing import Any, NamedTuple
 
 from ..axis import Axis, CompliantContact, InitialState, RigidContact, check_start
 from ..core.errors import InputError
-from ..core.input_profile import InputProfile, Sinusoid, constant, ramp, sinusoids, steps, table
-from ..core.position_profile import check_first_position, positions
-from ..rig.changed_friction import with_friction_scaled
+from ..core.input_profile import (
+    InputProfile,
+    Sinusoid,
+    check_first_position,
+    constant,
+    positions,
+    ramp,
+    sinusoids,
+    steps,
+    table,
+)
+from ..simulation.plant import with_friction_scaled
 from ..solvers.normal_load import under_load
-from .friction import friction_of
-from .model import CommandSettings, RecordSettings, Scene, TimingSettings
+from .friction import check_scaled_friction, friction_of
+from .model import CommandSettings, RecordSettings, Scene, SolverSettings, TimingSettings, method_of
 from .profile_schema import FILE_SETTINGS, PROFILES
 from .rig_settings import rig_settings, time_settings
-from .scaled_friction import check_scaled_friction
 from .schema import JOINT_PREFIX
-from .solver import SolverSettings, method_of
-from .text import scene_text
-from .values import effective_values, section_of
+from .values import effective_values, scene_text, section_of
 
 _BREAKPOINTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table': table}
 

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The friction of a scene, from effective values: forwards, and backwards where that differs."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from ..axis import Friction
+from ..axis import Axis, Friction
 from ..core.errors import InputError
+from ..core.time_grid import Grid
 from ..friction import (
     ExcessTable,
     KineticTable,
@@ -20,7 +22,11 @@ from ..friction import (
     smooth,
 )
 from ..friction.kinetic import default_excess
+from ..simulation.faults import Faults
+from ..simulation.plant import with_friction_scaled
+from ..simulation.rig import RigSettings
 from .friction_schema import BACKWARD, backward_name, forward_name
+from .model import SolverSettings
 from .schema import BY_NAME
 from .values import section_of
 
@@ -85,3 +91,18 @@ def _excess(values: Mapping[str, Any], kinetic: KineticTable) -> ExcessTable | N
         raise InputError(f'friction.excess.{given}', excess[given], 'given with both velocities and fractions',
                          'add the other, or leave both out')
     return ExcessTable(**excess) if excess else default_excess(kinetic)
+
+
+# Friction as the planned faults of a scene scale it, checked before the run.
+
+def check_scaled_friction(axis: Axis, solver: SolverSettings, rig: RigSettings, rate: float) -> None:
+    """Raise InputError when the solver cannot follow the axis at some time; `rate` in steps a second."""
+    plan = Faults(Grid(rate), rig.faults)
+    while plan.next_change < math.inf:
+        plan.enter(int(plan.next_change))
+        scale = math.prod(plan.values('friction_scale'))
+        try:
+            solver.check(with_friction_scaled(axis, scale))
+        except InputError as error:
+            raise InputError(f'with friction times {scale:g} by faults: {error.name}', error.value, error.allowed,
+                             error.fix) from None

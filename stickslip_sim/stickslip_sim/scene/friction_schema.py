@@ -4,11 +4,10 @@
 
 from dataclasses import replace
 
-from ..config.parameter import Parameter, When
 from ..core import ranges
 from ..core.ranges import Range
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
-from .declare import choice, number, numbers
+from .parameter import Parameter, When, choice, number, numbers
 
 BACKWARD = 'backward'
 

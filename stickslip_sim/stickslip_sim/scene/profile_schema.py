@@ -4,12 +4,11 @@
 
 import math
 
-from ..config.parameter import Parameter, When
-from ..config.ros_yaml import MOST_NUMBERS
 from ..core import ranges
 from ..core.input_profile import FREQUENCIES, MAX_SINUSOIDS
 from ..core.ranges import Range
-from .declare import choice, number, numbers
+from .parameter import Parameter, When, choice, number, numbers
+from .ros_yaml import MOST_NUMBERS
 
 MOST_POINTS = MOST_NUMBERS   # of a profile from a file
 FILE_SETTINGS = ('file', 'file_column', 'file_unit', 'file_time', 'file_time_unit', 'file_begin', 'file_resample')

@@ -8,10 +8,10 @@ from typing import Any
 
 from ..core.errors import InputError
 from ..core.time_grid import Grid
-from ..rig.drive import DriveLimits
-from ..rig.encoder import EncoderSettings
-from ..rig.faults import Fault, Faults
-from ..rig.settings import RigSettings
+from ..simulation.drive import DriveLimits
+from ..simulation.encoder import EncoderSettings
+from ..simulation.faults import Fault, Faults
+from ..simulation.rig import RigSettings
 from .model import TimeSettings
 
 _FAULT_LISTS = 'ids', 'kinds', 'starts', 'durations', 'values'

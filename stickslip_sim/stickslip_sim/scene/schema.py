@@ -8,12 +8,11 @@ rigid contact, a drive that stands still, no force.  (A node without any file ru
 
 import math
 
-from ..config.parameter import Parameter, When
 from ..core import ranges
 from ..core.ranges import Range
-from ..rig.faults import MAX_TIME
-from .declare import choice, number, numbers, texts
+from ..simulation.faults import MAX_TIME
 from .friction_schema import FRICTION
+from .parameter import Parameter, When, choice, number, numbers, texts
 from .profile_schema import drive_profile, profile
 
 _SOLVERS = ('exact', 'fixed_step', 'adaptive')

@@ -17,10 +17,11 @@ import numpy as np
 from ..axis import CompliantContact, InitialState
 from ..core.errors import SolverError
 from ..core.types import Event, EventKind, Mode
+from ..figures.rounds import break_aways
+from ..figures.slips import elapsed
 from ..scene import Scene
 from ..study.points import works_in_batches
-from .rounds import break_aways, settled_round
-from .stencil import CENTRAL
+from .moved_number import CENTRAL
 from .trace import Trace
 
 _SHORTEST = 1e-2   # s, the first look
@@ -55,9 +56,9 @@ def multiplier_of(scene: Scene) -> Multiplier:
     if not works_in_batches(scene):
         return _none('its inputs are not constant, or it has faults')
     trace = Trace(scene)
-    if not trace.extend_until(lambda run: settled_round(run) is not None, _SHORTEST):
+    if not trace.extend_until(lambda run: run.settled is not None, _SHORTEST):
         return _none('no limit cycle was found')
-    settled = settled_round(trace)
+    settled = trace.settled
     assert settled is not None
     places = break_aways(trace.events)
     first, last = places[settled.number + 1 - settled.size], places[settled.number + 1]
@@ -69,7 +70,7 @@ def _slope(scene: Scene, arrest: Event, group: list[Event], size: int) -> Multip
     """Return the multiplier by what follows an arrest: the `group` of events from break-away to break-away."""
     begin = _stretch(scene, arrest)
     count = sum(map(_is_arrest, group))
-    period = (group[-1].second - group[0].second) + (group[-1].fraction - group[0].fraction)
+    period = elapsed(group[0], group[-1])
     stretches = [_stretch(scene, event) for event in group]
     way = max(stretches) - min(stretches)
     found = []

@@ -10,13 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from ..core.arrays import Numbers
-from ..core.callbacks import Progress
+from ..core.arrays import Numbers, data_frame
 from ..core.errors import InputError, SolverError
+from ..core.types import Progress
 from ..inputs import SceneOrName, scene_of
-from ..runs.frame import data_frame
 from ..scene import Scene, changed
-from .figures import Figure, figure_of
+from .derived_figures import Figure, figure_of
 from .moved_number import LARGEST, SMALLEST, MovedNumber, moved_number, moved_numbers
 from .multiplier import Multiplier, multiplier_of
 from .sequence_change import SequenceChange, is_alike, nearest_change

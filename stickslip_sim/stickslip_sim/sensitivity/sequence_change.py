@@ -4,14 +4,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
 
-from .figures import Figure, described
+from ..figures.distance import first_difference
+from .derived_figures import Figure, described
 from .moved_number import MovedNumber
 from .trace import EventKey, Trace
 
 _HALVINGS = 60
-_T = TypeVar('_T')
 
 
 @dataclass(frozen=True)
@@ -73,14 +72,11 @@ def _steps(figure: Figure, trace: Trace) -> Sequence[EventKey]:
 def _in_words(figure: Figure, base: Trace, other: Trace | None) -> str:
     if other is None:
         return 'the scene cannot be run there'
-    (first, last), (first_there, last_there) = figure.extent(base), figure.extent(other)
-    for k in range(max(last - first, last_there - first_there)):
-        here, there = _item(base.events[first:last], k), _item(other.events[first_there:last_there], k)
-        if here is None or there is None or _item(base.sequence, first + k) != _item(other.sequence, first_there + k):
-            words = ['none' if one is None else described(one) for one in (here, there)]
-            return f'event {first + k + 1} is {words[0]} here, {words[1]} there'
-    return 'the figure is missing there'
-
-
-def _item(items: Sequence[_T], k: int) -> _T | None:
-    return items[k] if k < len(items) else None
+    k = first_difference(_steps(figure, base), _steps(figure, other))
+    if k is None:
+        return 'the figure is missing there'
+    words = []
+    for trace in (base, other):
+        first, last = figure.extent(trace)
+        words.append(described(trace.events[first + k]) if first + k < last else 'none')
+    return f'event {figure.extent(base)[0] + k + 1} is {words[0]} here, {words[1]} there'

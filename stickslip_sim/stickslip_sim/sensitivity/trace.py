@@ -9,12 +9,14 @@ import numpy as np
 from ..core.arrays import Numbers
 from ..core.time_grid import Instants
 from ..core.types import Event, Instant, Sample
+from ..figures.rounds import Settled, settled_round
 from ..scene import Scene
 
 EventKey = tuple[int, int, int]   # kind, mode and direction of an event
 
 LONGEST_TRACE = 1e6        # s
 _MOST_EVENTS = 50_000
+_SAME = 1e-10   # relative: rounds that repeat
 
 
 class Trace:
@@ -52,6 +54,11 @@ class Trace:
                 return False
             self.extend(min(2.0 * self.end, LONGEST_TRACE))
         return True
+
+    @property
+    def settled(self) -> Settled | None:
+        """The last round, once it repeats another to _SAME; None while it does not."""
+        return settled_round(self.events, _SAME)
 
     def _take(self, events: Sequence[Event]) -> None:
         self.events += events

@@ -10,15 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..axis import Axis, InitialState, check_start
-from ..core.energy import EnergyBalance
 from ..core.errors import InputError
 from ..core.input_profile import Input, InputProfile
 from ..core.time_grid import Instants
-from ..core.types import Event, EventKind, Instant, Sample
+from ..core.types import EnergyBalance, Event, EventKind, Instant, Sample
 from ..solvers import Solver, exact
-from .checkpoint import event_of
 from .inputs import Inputs, LoadedInputs
-from .solved_axis import SolvedAxis, SolverOf
+from .solved_axis import SolvedAxis, SolverOf, event_of
 
 
 class Simulator:

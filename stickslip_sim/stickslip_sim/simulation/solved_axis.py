@@ -3,23 +3,49 @@
 """One axis under its solver: parameters, state and table of events, brought from time to time; and what ends a run."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..axis import Axis, InitialState, pack
-from ..core.energy import EnergyBalance
 from ..core.errors import SolverError, UnsoundError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Instants
-from ..core.types import Event, EventKind, Instant, Mode, Sample, tuple_of
+from ..core.types import EnergyBalance, Event, EventKind, Instant, Mode, Sample, tuple_of
 from ..solvers import DONE, FULL, OUT_OF_RANGE, UNSOUND, Solver
 from ..solvers.normal_load import under_load
 from ..solvers.walk import walk_of
-from .checkpoint import check_state, numbers_of
 from .inputs import Inputs
+
+# Numbers of a simulator that were saved, checked before a solver goes on with them.
+#
+# A solver takes some of its numbers as places in tables and does not look twice.
+
+def numbers_of(saved: Iterable[Any], state: Any) -> list[float]:
+    """Return saved numbers for a state of this size; raises TypeError or ValueError."""
+    numbers, size = [float(number) for number in saved], len(state.numbers())
+    if len(numbers) != size:
+        raise ValueError(f'a state of {len(numbers)} numbers where {size} are expected')
+    return numbers
+
+
+def check_state(state: Any, sinusoids: int, parameters: Any) -> None:
+    """Raise ValueError when a state is none of an axis with these parameters and so many sinusoids."""
+    for name, number, highest in (('mode', state.mode, max(Mode)),
+                                  ('segment', state.segment, int(parameters.segment_count) - 1),
+                                  ('sinusoids', state.sinusoid_count, sinusoids),
+                                  ('sinusoids', state.given_sinusoids, sinusoids)):
+        if number not in range(highest + 1):
+            raise ValueError(f'{name} = {number!r} is none of this scene')
+
+
+def event_of(saved: Sequence[Any]) -> Event:
+    """Return a saved event; raises TypeError or ValueError."""
+    second, fraction, kind, mode, direction, *numbers = saved
+    return Event(float(second), float(fraction), EventKind(kind), Mode(mode), int(direction), *map(float, numbers))
+
 
 SolverOf = Callable[[Axis], Solver]
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Solvers: each brings a state to a time and writes the events on the way; all behind the same methods."""
+"""What brings a state through time: exact, adaptive, fixed steps.  The physics they solve are in `axis`."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol, runtime_checkable

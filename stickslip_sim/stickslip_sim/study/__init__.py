@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Design studies: many variants of one scene, the cycle figures of each, and where the motion changes.
+"""Many variants of one scene: sweeps, maps, critical values, uncertainty.  Derivatives are in `sensitivity`.
 
     study = Study(load_scene('paper_fig7').values, Grid((variation('drive.velocity=1e-4:1e-1:100:log'),)))
     figures = study.figures(0, study.count)
@@ -8,8 +8,8 @@
 A study is plain data and can be sent to other processes; `figures` of a stretch of its points depends on nothing else.
 """
 
+from ..figures.point_figures import MOTIONS, Figures, Motion
 from .distribution import Distribution
-from .point_figures import MOTIONS, Figures, Motion
 from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
 from .variation import Variation, variation

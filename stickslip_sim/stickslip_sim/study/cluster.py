@@ -15,11 +15,10 @@ from importlib.util import find_spec
 from typing import Any
 
 from ..core.errors import InputError
-from .description import versions_of_a_study
+from ..figures.point_figures import Figures
 from .folder import KEPT
-from .point_figures import Figures
-from .study import Study
-from .workers import WorkerError, Workers
+from .study import Study, versions_of_a_study
+from .sweep import WorkerError, Workers
 
 _PATIENCE = 5.0   # s for the scheduler to answer
 

@@ -8,20 +8,17 @@ Until all points are there the table is `points.partial.csv`; then it becomes `p
 import fcntl
 import json
 import os
-import shutil
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
 from ..core.arrays import Numbers
-from ..core.did_you_mean import paths_beside, suggestion
-from ..core.errors import InputError
-from .description import FORM, description
-from .parquet import write_parquet
+from ..core.errors import InputError, paths_beside, suggestion
+from ..core.paths import made_folder
 from .resources import check_resources
-from .study import Study
-from .table import TableColumns, may_be_table, next_lines, read_rows, title_line, words
+from .study import FORM, Study, description
+from .table import TableColumns, may_be_table, next_lines, read_rows, title_line, words, write_parquet
 
 LONGEST_SIDECAR = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, POINTS_TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
@@ -50,7 +47,7 @@ class Folder:
             raise InputError('--out', str(self.path), 'a folder that does not exist',
                              'choose another name, or add --resume to go on with it')
         temporary = self.path.absolute().with_name(f'.{os.getpid()}.{self.path.name}')
-        with _refusing(self.path, 'nothing is left behind'), _made(temporary):
+        with _refusing(self.path, 'nothing is left behind'), made_folder(temporary):
             check_resources(study, temporary)
             (temporary / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
                                              encoding='utf-8')
@@ -130,20 +127,6 @@ class Folder:
         with _refusing(self.path):
             write_parquet(columns | {'motion': words(columns['motion'])}, self.path / PARQUET)
             (self.path / PARTIAL).replace(self.table)
-
-
-@contextmanager
-def _made(folder: Path) -> Iterator[None]:
-    """Make a folder and those around it; on an error it goes again, with all in it, and those that are empty then."""
-    new = [place for place in (folder, *folder.parents) if not os.path.lexists(place)]
-    try:
-        folder.mkdir(parents=True)
-        yield
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-        for place in new[1:]:
-            with suppress(OSError):
-                place.rmdir()
 
 
 @contextmanager

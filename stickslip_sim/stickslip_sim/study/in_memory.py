@@ -9,16 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from ..core.arrays import Numbers
-from ..core.callbacks import Progress
+from ..core.arrays import Numbers, data_frame
+from ..core.types import Progress
 from ..inputs import SceneOrName, scene_of
-from ..runs.frame import data_frame
 from .critical import Critical, critical_of, default_range
-from .point_figures import FIGURES, MOTIONS, Motion
 from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
-from .uncertain_file import load_uncertain, uncertain_of
-from .uncertainty import Uncertainty, uncertainty_of
+from .table import columns, rows_of, words
+from .uncertainty import Uncertainty, load_uncertain, uncertain_of, uncertainty_of
 from .variation import range_of, variation
 
 
@@ -31,7 +29,7 @@ class SweptPoints:
     @property
     def motions(self) -> list[str]:
         """What each point ends in, in the words of docs/maps.md: at rest, smooth sliding, stick-slip, undecided, ..."""
-        return [MOTIONS[Motion(int(motion))] for motion in self.columns['motion']]
+        return words(self.columns['motion'])
 
     def frame(self) -> Any:
         """Return the columns as a pandas.DataFrame, the motions in words; raises InputError without pandas."""
@@ -85,9 +83,7 @@ def _columns(study: Study, progress: Progress) -> dict[str, Numbers]:
     """Run all points of a study; return its parameters and figures by name."""
     parts = []
     for first, last in study.stretches():
-        figures = study.figures(first, last)
-        numbers = [np.asarray(getattr(figures, name), dtype=np.float64) for name in FIGURES]
-        parts.append(np.column_stack([study.points(first, last), *numbers]))
+        parts.append(rows_of(study.points(first, last), study.figures(first, last)))
         if progress:
             progress(last / study.count)
-    return dict(zip((*study.names, *FIGURES), np.concatenate(parts).T))
+    return columns(study, np.concatenate(parts))

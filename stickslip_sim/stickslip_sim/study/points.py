@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 from ..axis.rows import EventRow
 from ..core.arrays import Numbers
 from ..core.errors import InputError, SolverError
+from ..figures.cycles import SWINGS_ON
+from ..figures.point_figures import Runs, no_runs
 from ..friction import StaticLawKind
 from ..runs import SimulatedRun, simulate_events
 from ..runs.batch import figures_in, rounds_in
 from ..scene import Scene, scene_from_values
 from ..scene.friction_schema import BACKWARD
 from ..scene.values import overridden
-from ..simulation.cycles import SWINGS_ON
 from ..solvers.exact import many_axes
 from ..solvers.exact.axis_figures import AxisFigures
-from .point_figures import Runs, no_runs
 from .settling import DOUBLINGS, PATIENCE, run_settled, runs_of
 from .variation import changes_at
 

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError
-from .correlations import Correlations, correlated, factor_of
-from .distribution import Distribution
+from .distribution import Correlations, Distribution, correlated, factor_of
 from .variation import Variation
 
 MOST_DRAWN = 1 << 30   # points of a Sobol sequence of scipy

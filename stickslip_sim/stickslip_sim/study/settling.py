@@ -6,7 +6,7 @@ An axis runs for at least eight times a natural period and the time in which its
 limit, rounded up to a power of two.  It runs twice as long, from the start, until one of these is known:
 
 * it sticks and slips for ever: in this run and in the one before the latest rounds repeat, one by one or in groups,
-  and end alike (`repetition`);
+  and end alike (`figures.rounds`);
 * it never sticks again: the least speed of the slip that goes on grows from swing to swing (the argument is that of
   `solvers.exact.many_axes`), or a slip took more than half of the run and twice the time brought no event more, nor
   will more time, as it does where the slider coasts a little faster or slower than its drive;
@@ -26,19 +26,44 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..axis import Axis, InitialState
-from ..core.arrays import Numbers
+from ..core.arrays import Flags, Numbers
 from ..core.types import Mode
+from ..figures.point_figures import RUN_FIELDS, Runs, no_runs
+from ..figures.rounds import drifts, ends_alike, group_size
 from ..runs.batch import BatchFigures, Rounds, run_rounds
 from ..solvers.exact.axis_figures import ROUND_SIZE
-from .point_figures import RUN_FIELDS, Flags, Runs, no_runs
-from .repetition import drifts, ends_alike, group_size
-from .steady import sliding_slope
+
+# Steady sliding at the speed of the drive, and whether it lasts.
+#
+# m ẍ = c (s − x) + h (v − ẋ) + F_e − N mu_k(ẋ): disturbances of ẋ = v die out where h + N mu_k′(v) > 0 and grow where
+# it is negative, at any mass and stiffness.
+#
+# At a breakpoint each swing is half on either side.  With γ = (h + N mu_k′)/2m below and above it, a turn multiplies
+# the swing by exp(−π γ/√(ω² − γ²)) of both halves: it grows exactly where the two γ have a negative sum, so that their
+# mean counts.  A side without half swings, |γ| ≥ ω, decides alone.
+
+def sliding_slope(axis: Axis, inputs: Mapping[str, Numbers]) -> Numbers:
+    """Return h + N mu_k′(v), N s/m, for each of `inputs` as of `batch.run_batch`; NaN where the drive rests."""
+    def given(name: str) -> Numbers:
+        return inputs.get(name, np.array(getattr(axis, name)))
+
+    below, above = np.array([axis.friction.along(v).kinetic.slopes(abs(v))
+                             for v in inputs['drive_velocity'].tolist()]).reshape(-1, 2).T
+    low, high = (given('drive_damping') + given('normal_force') * side
+                 for side in (np.minimum(below, above), np.maximum(below, above)))
+    swings = 2.0 * np.sqrt(given('drive_stiffness') * given('mass'))
+    found = np.where(low <= -swings, low, np.where(high >= swings, high, 0.5 * (low + high)))
+    result: Numbers = np.where(inputs['drive_velocity'] == 0.0, np.nan, found)
+    return result
+
 
 PATIENCE = 400     # cycles
 DOUBLINGS = 10
 _LOADINGS = 8.0    # of the spring, and natural periods, that a run has at least
 _EVENTS = 8        # of a cycle, or of a swing without a stick, as a rule
 _WINDOW = 64       # rounds
+_REPEATED, _STILL = 1e-6, 1e-11   # of their numbers, in all and in the later half: rounds that are the same
+_NEARLY = 1e-2     # of the same: an axis that drifts
 _PAUSE = 4.0
 _LEAST_ROUNDS = 8  # with a stick in the second half, to speak of a mean pause
 _FADING = 0.95     # of the share of stick, from a run to one twice as long
@@ -147,17 +172,18 @@ def _swings(before: Runs, now: Runs, speed: Numbers) -> tuple[Flags, Flags, Flag
 def _repeats(before: _Stage, now: _Stage, force: Numbers) -> Flags:
     """Return which runs stick and slip in a cycle, or a group of cycles, that stays."""
     counts = np.where(before.runs.duration > 0.0, now.runs.round_count - before.runs.round_count, 0.0)
-    size = group_size(now.windows, np.minimum(counts, _WINDOW), force)
+    size = group_size(now.windows, np.minimum(counts, _WINDOW), force, _REPEATED, _STILL)
     if not size.any():
         return size > 0.0
-    repeats: Flags = (size > 0.0) & ~now.runs.slides_on & ends_alike(before.windows, now.windows, size, force)
+    same_end = ends_alike(before.windows, now.windows, size, force, _REPEATED)
+    repeats: Flags = (size > 0.0) & ~now.runs.slides_on & same_end
     return repeats
 
 
 def _drifts(before: _Stage, now: _Stage, axis: Axis, inputs: Mapping[str, Numbers]) -> Flags:
     """Return which runs change little from round to round, by which a cycle may still vanish."""
     counts = np.minimum(now.runs.round_count - before.runs.round_count, _WINDOW)
-    return drifts(now.windows, counts, _static_force(axis, inputs)) & ~(now.runs.lasts | now.runs.rests_on)
+    return drifts(now.windows, counts, _static_force(axis, inputs), _NEARLY) & ~(now.runs.lasts | now.runs.rests_on)
 
 
 def _is_open(before: Runs, now: Runs) -> Flags:

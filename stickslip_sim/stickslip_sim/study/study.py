@@ -3,21 +3,26 @@
 """A study: variants of one scene, and the figures of each."""
 
 import itertools
+import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
+from importlib import metadata
+from typing import Any
 
 import numpy as np
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError
+from ..figures.point_figures import Figures, Runs, figures_of_runs
+from ..report.values import versions
 from ..runs.simulated import check_run_times
 from ..scene import Scene, scene_from_values
-from ..scene.load import named
-from .point_figures import Figures, Runs, figures_of_runs
+from ..scene.load import named, parse_scene
+from .distribution import Distribution
 from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
-from .sample import Sampling
-from .variation import Variation
+from .sample import EvenGrid, Saltelli, Sampling, Sobol
+from .variation import Variation, checked
 
 MOST_VARIATIONS = 10
 _IN_A_CHUNK, _ALONE_IN_A_CHUNK = 2000, 20   # points: a fraction of a second
@@ -107,3 +112,61 @@ class Study:
         twice = [name for name in names if names.count(name) > 1]
         if twice:
             raise InputError('--over', twice[0], 'given once for each parameter', 'drop one of the two')
+
+
+# A study as JSON values, and back: the file beside its table.
+
+FORM = 'stickslip study 1'
+_OF_THE_SAMPLE = ('points', 'duration', 'over', 'sobol', 'uncertain')
+
+
+def description(study: Study, command: str = '') -> dict[str, Any]:
+    """Return all that a study is, enough to run it again, with the `command` and the versions that run it."""
+    sample = study.sample
+    return {
+        'form': FORM, 'command': command, 'scene': study.scene.name, 'scene_hash': study.scene.hash,
+        'points': study.count, 'duration': study.duration,
+        'over': [{**_json(asdict(one)), 'unit': one.unit} for one in sample.variations],
+        'sobol': {'points': sample.count, 'seed': sample.seed} if isinstance(sample, Sobol) else None,
+        'uncertain': _uncertain(sample) if isinstance(sample, Saltelli) else None,
+        'versions': versions_of_a_study(), 'scene_text': study.scene.text,
+    }
+
+
+def versions_of_a_study() -> dict[str, str]:
+    """Return the versions of everything that the points of a study and their figures depend on."""
+    return {**versions(), 'scipy': metadata.version('scipy')}
+
+
+def study_of(found: Mapping[str, Any]) -> Study:
+    """Return the study that a description is of; raises InputError."""
+    try:
+        scene = parse_scene(found['scene_text'])
+        study = Study(scene.values, _sample_of(found), found['duration'])
+        described = description(study)
+        if all(json.dumps(found[name]) == json.dumps(described[name]) for name in _OF_THE_SAMPLE):
+            return study
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
+        pass
+    raise InputError('study', str(found.get('scene')), 'as a sweep describes it', 'it was changed; sweep again')
+
+
+def _uncertain(sample: Saltelli) -> dict[str, Any]:
+    correlations = {'correlations': [list(row) for row in sample.correlations]} if sample.correlations else {}
+    return {'samples': sample.samples, 'seed': sample.seed, **correlations}
+
+
+def _json(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in values.items()}
+
+
+def _sample_of(found: Mapping[str, Any]) -> Sampling:
+    uncertain, drawn = found['uncertain'], found['sobol']
+    if uncertain:
+        laws = tuple(Distribution(one['name'], one['law'], tuple(one['numbers']), one['low'], one['high'])
+                     for one in found['over'])
+        correlations = tuple(map(tuple, uncertain.get('correlations', ())))
+        return Saltelli(laws, uncertain['samples'], uncertain['seed'], correlations or None)
+    variations = tuple(checked(Variation(one['name'], float(one['low']), float(one['high']), int(one['count']),
+                                         bool(one['log']))) for one in found['over'])
+    return Sobol(variations, drawn['points'], drawn['seed']) if drawn else EvenGrid(variations)

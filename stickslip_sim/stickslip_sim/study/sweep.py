@@ -2,20 +2,157 @@
 # SPDX-License-Identifier: Apache-2.0
 """All points of a study, chunk by chunk and in their order, by one process, several, or a cluster."""
 
+import os
+import pickle
+import select
+import signal
+import subprocess
+import sys
+import threading
+import traceback
 from collections import deque
-from collections.abc import Iterable, Iterator
-from concurrent.futures import Future
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from contextlib import AbstractContextManager, contextmanager, suppress
 from itertools import islice
-from typing import NamedTuple
+from multiprocessing.connection import Connection, Pipe
+from queue import SimpleQueue
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
-from ..core.callbacks import Progress
-from .folder import Folder
-from .point_figures import Figures
+from ..core.errors import StickslipError
+from ..core.hot_path import hot_path
+from ..core.types import Progress
+from ..figures.point_figures import Figures
+from .folder import KEPT, Folder
 from .study import Study
 from .table import TableColumns, columns, lines, read_columns, rows_of
-from .workers import Workers
+
+# The workers on the chunks of a study beside this process: other processes of this machine.
+#
+# Each has a connection of its own, and nothing is shared: one that is killed, at any moment, leaves no lock taken and
+# no message of another one cut off.  Its connection ends, and what it was at raises an error here.
+
+class WorkerError(StickslipError):
+    """A worker is gone, or cannot work."""
+
+
+class Workers(NamedTuple):
+    """So many workers behind a `pool`, and the function by which they find the figures of a stretch of points."""
+
+    pool: Executor
+    size: int
+    work: Callable[[Study, int, int], Figures] = Study.figures
+
+
+@contextmanager
+def processes(count: int) -> Iterator[Workers]:
+    """Yield processes; at the end, and on any error, they are killed: their parent alone keeps what they found."""
+    pool = _Processes(count)
+    try:
+        yield Workers(pool, count)
+    finally:
+        pool.kill()
+
+
+class _Processes(Executor):
+    """Up to `count` processes, started as they are needed; for each a thread hands over work and waits."""
+
+    def __init__(self, count: int) -> None:
+        self._count = count
+        self._started: list[_Process] = []
+        self._idle: SimpleQueue[_Process] = SimpleQueue()
+        self._threads = ThreadPoolExecutor(count)
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Have a process call a function; raises WorkerError."""
+        # what is started here inherits that Ctrl-C is held back, and leaves it to the thread that asked
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+        try:
+            if len(self._started) < self._count:
+                self._started.append(_Process())
+                self._idle.put(self._started[-1])
+            return self._threads.submit(self._done_by_one, fn, args, kwargs)
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+    def _done_by_one(self, *work: Any) -> Any:
+        process = self._idle.get()    # there are no more threads than processes
+        try:
+            return process.do(work)
+        finally:
+            self._idle.put(process)
+
+    def kill(self) -> None:
+        """Drop all that is not done, and end the processes."""
+        self._threads.shutdown(wait=False, cancel_futures=True)
+        for process in self._started:
+            process.kill()
+        self._threads.shutdown()
+
+
+class _Process:
+    """A process that does one piece of work after the other for this one, and ends with it, however that ends."""
+
+    def __init__(self) -> None:
+        program = f'import sys; sys.path[:] = sys.argv[2:]; from {__name__} import {serve.__name__} as serve; '
+        # plain Python here is plain Python there, without a second line that says so
+        hot = {'STICKSLIP_COMPILED': '0'} if hot_path() == 'plain python' else {}
+        try:
+            self._connection, end = Pipe()
+            with end:
+                self._process = subprocess.Popen(
+                    [sys.executable, '-c', f'{program}serve(int(sys.argv[1]))', str(end.fileno()), *sys.path],
+                    stdin=subprocess.DEVNULL, pass_fds=[end.fileno()], env={**os.environ, **hot})
+        except OSError as error:
+            raise WorkerError(f'a worker process cannot be started: {error.strerror}; {KEPT}') from None
+
+    def do(self, work: tuple[Any, ...]) -> Any:
+        """Have it call a function with arguments; raises what that raises, and WorkerError when the process is gone."""
+        try:
+            self._connection.send(work)
+            result, error, where = self._connection.recv()
+        except (EOFError, OSError):
+            raise WorkerError(f'a worker process {_ended(self._process.wait())}; {KEPT}') from None
+        if error is not None:
+            raise error from RuntimeError(where)
+        return result
+
+    def kill(self) -> None:
+        """End it, and wait for that."""
+        self._process.kill()
+        self._process.wait()
+
+
+def _ended(code: int) -> str:
+    return f'was killed by signal {-code}' if code < 0 else f'ended with exit code {code}'
+
+
+def serve(descriptor: int) -> None:
+    """Do the work that comes over a connection, until that ends: all that a worker process does."""
+    with Connection(descriptor) as parent, suppress(EOFError, OSError):
+        threading.Thread(target=_end_with, args=(parent,), daemon=True).start()
+        while True:
+            parent.send_bytes(_answer(parent.recv_bytes()))
+
+
+def _end_with(parent: Connection) -> NoReturn:
+    """End this process, at work or not, as soon as nobody holds the other end of its connection."""
+    hung_up = select.poll()
+    hung_up.register(parent, 0)    # a hang-up is reported with any mask
+    hung_up.poll()
+    os._exit(1)    # sys.exit would end this thread alone, and the work go on for nobody
+
+
+def _answer(request: bytes) -> bytes:
+    """Return the result of the work that was asked for, or its error and where that came from."""
+    try:
+        function, args, kwargs = pickle.loads(request)
+        return pickle.dumps((function(*args, **kwargs), None, ''))
+    except Exception as error:
+        return pickle.dumps((None, error, traceback.format_exc()))
+
 
 _AHEAD = 4   # chunks that wait for each worker
 _Stretch = tuple[int, int]   # the first of some points, and the one after the last of them
@@ -26,6 +163,20 @@ class Swept(NamedTuple):
 
     columns: TableColumns
     ran: int
+
+
+def carry_out(study: Study, folder: Folder, workers: AbstractContextManager[Workers | None], resume: bool, command: str,
+              progress: Progress = None) -> Swept:
+    """Run a study into its folder, new or resumed, as `sweep_into` does; `command` began it."""
+    with workers as members:   # workers that cannot be had leave no folder behind
+        if resume:
+            folder.check_same(study)
+        else:
+            folder.begin(study, command)
+        try:
+            return sweep_into(study, folder, members, progress)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(f'interrupted; what is done is kept in {folder.path}, --resume goes on') from None
 
 
 def sweep_into(study: Study, folder: Folder, workers: Workers | None = None, progress: Progress = None) -> Swept:

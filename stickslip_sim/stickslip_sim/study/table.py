@@ -6,16 +6,16 @@ Nothing here runs a point.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
-from ..core.arrays import Numbers
+from ..core.arrays import Numbers, has_parquet
 from ..core.errors import InputError
-from .point_figures import FIGURES, MOTIONS, Figures, Motion
+from ..figures.point_figures import FIGURES, MOTIONS, Figures, Motion
 from .study import Study
 
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
@@ -125,3 +125,20 @@ def _numbers(row: bytes, place: int) -> list[float]:
         raise ValueError('this is no whole line')
     cells[place] = str(_CODES[cells[place]])
     return [float(cell.strip() or 'nan') for cell in cells]
+
+
+# The table of a sweep as Parquet, where pandas and a writer are installed (the extra `tables`).
+
+def write_parquet(columns: Mapping[str, Numbers | Sequence[str]], path: Path) -> None:
+    """Write columns as Parquet, to the last bit; do nothing where pandas or its writer is missing or broken."""
+    if not has_parquet():
+        return
+    temporary = path.with_name(f'.{path.name}')
+    try:
+        import pandas
+        pandas.DataFrame(columns).to_parquet(temporary, index=False)
+        temporary.replace(path)
+    except ImportError:   # there, but not in working order: no reason to leave the table of a study unfinished
+        pass
+    finally:
+        temporary.unlink(missing_ok=True)

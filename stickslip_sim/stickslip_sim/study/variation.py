@@ -9,12 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..config.parameter import Parameter
 from ..core.arrays import Numbers
-from ..core.did_you_mean import suggestion
-from ..core.errors import InputError
-from ..runs.wording import quantity
+from ..core.errors import InputError, suggestion
+from ..report.quantity import quantity
 from ..scene.friction_schema import forward_name
+from ..scene.parameter import Parameter
 from ..scene.profile_schema import PROFILES
 from ..scene.schema import BY_NAME
 

@@ -5,8 +5,8 @@
 import math
 
 from stickslip_sim.core.types import EventKind, Mode
+from stickslip_sim.figures.cycles import summary
 from stickslip_sim.runs.batch import run_batch
-from stickslip_sim.simulation.cycles import summary
 
 from ..case import Find, Run
 

@@ -15,8 +15,7 @@ from stickslip_sim.identification.curve.best_law import fit_laws, sides, sign_ch
 from stickslip_sim.identification.curve.law_fit import Fit
 from stickslip_sim.identification.curve.law_in_scene import Origin, scene_with_friction
 from stickslip_sim.identification.curve.measured_curve import FrictionCurve
-from stickslip_sim.identification.curve.smooth_fit import fit_smooth
-from stickslip_sim.identification.curve.smooth_laws import SMOOTH_FORMS
+from stickslip_sim.identification.curve.smooth_fit import SMOOTH_FORMS, fit_smooth
 from stickslip_sim.identification.curve.table_fit import fit_table, points_table
 
 SPEEDS: Numbers = np.geomspace(1e-4, 0.2, 40).astype(np.float64)

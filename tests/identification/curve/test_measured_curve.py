@@ -8,7 +8,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.identification.curve.measured_curve import FrictionCurve, Units, load_curve, units_of
-from stickslip_sim.inputs.units import SPEEDS, in_si, named_unit
+from stickslip_sim.inputs.csv_table import SPEEDS, in_si, named_unit
 from tests.support.repository import ROOT
 
 MILLI = Units('mm/s')

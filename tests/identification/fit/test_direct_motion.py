@@ -7,11 +7,10 @@ import pytest
 
 from stickslip_sim import Sample, Simulator, load_scene
 from stickslip_sim.core.arrays import Numbers
-from stickslip_sim.identification.fit.direct_motion import with_delay
-from stickslip_sim.identification.given.free_parameters import FreeParameter
-from stickslip_sim.identification.given.input_readings import LINE, InputReadings
-from stickslip_sim.identification.given.measured_inputs import profile_through
-from stickslip_sim.identification.given.readings import Channel, SensorReadings, instants_of
+from stickslip_sim.identification.direct import with_delay
+from stickslip_sim.identification.free_parameters import FreeParameter
+from stickslip_sim.identification.measured_inputs import profile_through
+from stickslip_sim.identification.readings import LINE, Channel, InputReadings, SensorReadings, instants_of
 
 MICROMETRE = 1e-6
 MASS = FreeParameter('axis.mass', 'kg', 70.0, 50.0, 200.0)

@@ -7,10 +7,8 @@ import pytest
 from scipy.optimize import lsq_linear
 
 from stickslip_sim.core.arrays import Numbers
-from stickslip_sim.identification.fit.bounded_step import bounded_step
-from stickslip_sim.identification.fit.least_squares import Solution, minimise
-from stickslip_sim.identification.fit.region import Region, region_of
-from stickslip_sim.identification.given.free_parameters import FreeParameter
+from stickslip_sim.identification.free_parameters import FreeParameter, Region, region_of
+from stickslip_sim.identification.least_squares import Solution, bounded_step, minimise
 
 KINETIC, STATIC, LIMIT = 'friction.kinetic.initial', 'friction.static.initial', 'friction.static.limit'
 VALUES = {KINETIC: 0.1, STATIC: 0.15, LIMIT: 0.2, 'friction.static.law': 'exponential'}

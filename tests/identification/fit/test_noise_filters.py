@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from stickslip_sim.core.arrays import Numbers
-from stickslip_sim.identification.fit.noise_filters import NoiseFilter, filters_of
-from stickslip_sim.identification.given.readings import Channel, SensorReadings
+from stickslip_sim.identification.force_noise import NoiseFilter, filters_of
+from stickslip_sim.identification.readings import Channel, SensorReadings
 
 TIMES: Numbers = np.arange(4000, dtype=np.float64) * 1e-3
 NONE: Numbers = np.array([])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.core.arrays import Numbers
-from stickslip_sim.identification.given.measured_inputs import travelled, velocity_within
+from stickslip_sim.identification.measured_inputs import travelled, velocity_within
 
 MICROMETRE = 1e-6
 TIMES: Numbers = np.arange(4000, dtype=np.float64) * 1e-3

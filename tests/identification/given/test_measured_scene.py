@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
-from stickslip_sim.identification.report.results import IDENTIFIED_SCENE, write_results
+from stickslip_sim.identification.results import IDENTIFIED_SCENE, write_results
 from stickslip_sim.recording import write_measured
 from stickslip_sim.recording.measured_run import MeasuredRun
 from tests.support.measured_runs import between

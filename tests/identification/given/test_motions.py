@@ -12,8 +12,8 @@ from benchmarks.identify.axes import SyntheticAxis, axes
 from benchmarks.identify.machines import DURATION
 from benchmarks.identify.measuring import measure
 from stickslip_sim.core.types import EventKind, Mode
-from stickslip_sim.identification.given.motions import motions_of, track_of
-from stickslip_sim.identification.given.readings import readings_of
+from stickslip_sim.identification.motions import motions_of, track_of
+from stickslip_sim.identification.readings import readings_of
 
 LEAST = 2e-5   # m: what a sensor of 1 µm shows as a slip
 LATE = 0.02    # s

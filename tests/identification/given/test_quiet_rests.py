@@ -5,10 +5,9 @@
 import numpy as np
 
 from stickslip_sim.core.arrays import Numbers
-from stickslip_sim.identification.given.input_readings import LINE, InputReadings
-from stickslip_sim.identification.given.motions import MeasuredMotion
-from stickslip_sim.identification.given.quiet_rests import with_quiet_rests
-from stickslip_sim.identification.given.readings import SensorReadings
+from stickslip_sim.identification.force_noise import with_quiet_rests
+from stickslip_sim.identification.motions import MeasuredMotion
+from stickslip_sim.identification.readings import LINE, InputReadings, SensorReadings
 
 TIMES: Numbers = np.arange(3000, dtype=np.float64) * 1e-3
 MOTION = MeasuredMotion(1.0, 1.5, 0.0, 1e-3, (1.1, 1.2, 1.25, 1.3, 1.4))   # at rest before 1.1 s and from 1.5 s on

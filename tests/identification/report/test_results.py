@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stickslip_sim.config.ros_yaml import read_yaml
-from stickslip_sim.identification.given.free_parameters import FreeParameter
+from stickslip_sim.figures.point_figures import FIGURES
+from stickslip_sim.identification.free_parameters import FreeParameter
 from stickslip_sim.identification.identified import (
     AT_BOUND,
     NOT_IDENTIFIABLE,
@@ -24,15 +24,13 @@ from stickslip_sim.identification.identified import (
     Misfit,
     StartEnd,
 )
+from stickslip_sim.identification.identified_scene import identified_text
 from stickslip_sim.identification.identify import identify
-from stickslip_sim.identification.report.cycle_phases import phases, slip_share, usual_cycles
-from stickslip_sim.identification.report.friction_band import half_width, kinetic_of, static_of
-from stickslip_sim.identification.report.identified_scene import identified_text
-from stickslip_sim.identification.report.known_friction import known_friction
-from stickslip_sim.identification.report.measured_friction import binned, friction_points
-from stickslip_sim.identification.report.posterior import posterior_text
-from stickslip_sim.identification.report.report_values import IDENTIFIED_VALUES
-from stickslip_sim.identification.report.results import (
+from stickslip_sim.identification.known_friction import half_width, kinetic_of, known_friction, static_of
+from stickslip_sim.identification.measured_friction import binned, friction_points, phases, slip_share, usual_cycles
+from stickslip_sim.identification.posterior import posterior_text
+from stickslip_sim.identification.report import IDENTIFIED_VALUES
+from stickslip_sim.identification.results import (
     IDENTIFIED_PAGE,
     IDENTIFIED_SCENE,
     POSTERIOR,
@@ -40,15 +38,14 @@ from stickslip_sim.identification.report.results import (
     write_results,
 )
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.plots.characteristics import plot_known_friction
 from stickslip_sim.plots.identified_motion import plot_fit
-from stickslip_sim.plots.known_friction import plot_known_friction
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import scene_from_values
 from stickslip_sim.scene.load import parse_scene
+from stickslip_sim.scene.ros_yaml import read_yaml
 from stickslip_sim.study import Saltelli, Study
-from stickslip_sim.study.point_figures import FIGURES
-from stickslip_sim.study.uncertain_file import uncertain_of
-from stickslip_sim.study.uncertainty import uncertainty_of
+from stickslip_sim.study.uncertainty import uncertain_of, uncertainty_of
 from tests.support.measured_axes import FREE, START, free_file, readings, start_scene
 from tests.support.measured_axes import VALUES as TRUTH
 

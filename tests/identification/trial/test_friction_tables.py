@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from stickslip_sim.axis import Friction
-from stickslip_sim.identification.trial.friction_tables import with_table
+from stickslip_sim.identification.axis_model import with_table
 from stickslip_sim.scene import Scene, scene_from_values
 from stickslip_sim.scene.friction import friction_of
 

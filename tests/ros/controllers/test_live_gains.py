@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.scene.text import scene_text
+from stickslip_sim.scene.values import scene_text
 from tests.support.node_processes import assert_clean, running
 from tests.support.ros_nodes import Client, client
 from tests.support.waiting import wait_for

@@ -12,11 +12,11 @@ from builtin_interfaces.msg import Time
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
+from stickslip_sim.bags import topics
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.time_grid import NANOSECONDS
-from stickslip_sim.recording import topics
-from stickslip_sim.ros.diagnostics.graph_monitor import PublisherWatch
 from stickslip_sim.ros.node.clock import ClockIn
+from stickslip_sim.ros.node.graph_monitor import PublisherWatch
 from tests.support.node_processes import running
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
 from tests.support.ros_nodes import Client, client, nanoseconds

@@ -14,7 +14,7 @@ from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import executable, recording_into, running, with_small_files
 from tests.support.ros_nodes import client
 
-from stickslip_sim.ros.diagnostics.health_node import health_of  # isort: skip  # after ros_nodes, which skips without ROS
+from stickslip_sim.ros.health_node import health_of  # isort: skip  # after ros_nodes, which skips without ROS
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from stickslip_sim.recording import open_bag
-from stickslip_sim.rig import RigEventKind
+from stickslip_sim.simulation import RigEventKind
 from tests.support.node_processes import recording_into
 from tests.support.replays import rig_events_in
 from tests.support.ros_nodes import Client, node_and_client

@@ -10,8 +10,9 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.bags import topics
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.recording import flat_layout, topics
+from stickslip_sim.recording import flat_layout
 from tests.support.node_processes import running
 from tests.support.ros_nodes import Client, client, rclpy
 from tests.support.waiting import wait_for

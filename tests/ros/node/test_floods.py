@@ -14,11 +14,11 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.config.ros_yaml import plain_value
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag
-from stickslip_sim.rig import RigEventKind
 from stickslip_sim.scene import Scene
+from stickslip_sim.scene.ros_yaml import plain_value
+from stickslip_sim.simulation import RigEventKind
 from tests.support.node_processes import recording_into, running
 from tests.support.replays import assert_same_states, made_again, rig_events_in
 from tests.support.ros_nodes import client, node_and_client

@@ -14,8 +14,8 @@ from builtin_interfaces.msg import Time
 from rclpy.serialization import serialize_message
 from std_msgs.msg import Header
 
-from stickslip_sim.realtime.command_slot import CommandSlot
-from stickslip_sim.recording.topics import DRIVE_VELOCITY, EXTERNAL_FORCE
+from stickslip_sim.bags.topics import DRIVE_VELOCITY, EXTERNAL_FORCE
+from stickslip_sim.realtime.commands import CommandSlot
 from stickslip_sim.ros.node.endpoints import command_reader
 from tests.support.refusals import accepts_or_refuses
 

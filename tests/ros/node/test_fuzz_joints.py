@@ -11,7 +11,7 @@ pytest.importorskip('rclpy')
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 
-from stickslip_sim.recording.topics import JOINT_COMMANDS
+from stickslip_sim.bags.topics import JOINT_COMMANDS
 from stickslip_sim.ros.node.endpoints import message_of
 from stickslip_sim.ros.node.joints import JointNames, commanded_velocity, disregarded
 from tests.support.refusals import accepts_or_refuses

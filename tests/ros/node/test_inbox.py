@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 
-from stickslip_sim.realtime.command_slot import CommandSlot
-from stickslip_sim.recording import topics
+from stickslip_sim.bags import topics
+from stickslip_sim.realtime.commands import CommandSlot
 from tests.support.node_processes import running
 from tests.support.ros_nodes import client, rclpy
 from tests.support.waiting import wait_for
@@ -169,7 +169,7 @@ def test_a_node_that_comes_down_hears_nothing(pair: NodePair) -> None:
 
 
 def test_an_rclpy_that_takes_messages_otherwise_is_noticed(pair: NodePair) -> None:
-    from stickslip_sim.ros.node.inbox import trouble
+    from stickslip_sim.ros.node.subscribers import trouble
 
     class Handle:
         """One whose method wants other arguments."""

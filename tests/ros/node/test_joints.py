@@ -13,11 +13,11 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.realtime.command_slot import CommandSlot
+from stickslip_sim.realtime.commands import CommandSlot
 from stickslip_sim.recording import MessageCodec
 from stickslip_sim.recording.messages import header
-from stickslip_sim.rig import Measured
 from stickslip_sim.ros.node.joints import JointNames, JointStatePacker, commanded_velocity, disregarded
+from stickslip_sim.simulation import Measured
 
 # lark, which rosidl's Python brings in, imports modules that Python wants to rename.
 pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")

@@ -8,13 +8,13 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.check.verification import verify
 from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import RecordedRun, read_run
 from stickslip_sim.runs import simulate
-from stickslip_sim.runs.normal_force import LOAD_COLUMN
+from stickslip_sim.runs.run import LOAD_COLUMN
 from stickslip_sim.scene import changed
-from stickslip_sim.verify.verification import verify
 from tests.support.node_processes import recording_into
 from tests.support.ros_nodes import node_and_client
 

@@ -14,7 +14,7 @@ from rclpy.parameter import Parameter
 
 from stickslip_sim.core.types import EventKind, Instant
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.ros.node.parameter_requests import promoted
+from stickslip_sim.ros.node.parameters import promoted
 from stickslip_sim.scene.schema import BY_NAME, PARAMETERS
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.busy_machine import judged_by_time

@@ -18,9 +18,9 @@ from tests.support.node_processes import recording_into, running  # isort: skip 
 
 pytestmark = pytest.mark.ros
 
-IN_THE_STEP_LOOP = ('rig.rig', 'Rig', 'make_step', 'sim_node')
+IN_THE_STEP_LOOP = ('simulation.rig', 'Rig', 'make_step', 'sim_node')
 IN_THE_PLAYER = ('ros.replay.states', 'States', 'acts', 'replay_node')
-IN_THE_EXECUTOR = ('ros.diagnostics.periodic_report', 'PeriodicReport', 'report', 'sim_node')
+IN_THE_EXECUTOR = ('ros.node.periodic_report', 'PeriodicReport', 'report', 'sim_node')
 PLACES = {'step loop': IN_THE_STEP_LOOP, 'player': IN_THE_PLAYER, 'executor': IN_THE_EXECUTOR}
 
 
@@ -49,7 +49,7 @@ def test_a_defect_is_reported_and_shown_where(tmp_path: Path, monkeypatch: pytes
 
 CORRUPTED = """
 import sys
-from stickslip_sim.ros import sim_node
+from stickslip_sim.ros.executables import sim_node
 from stickslip_sim.solvers import exact, with_advance
 
 done = []
@@ -61,7 +61,7 @@ def corrupted(p, s, second, fraction, *arguments):
     return exact.advance(p, s, second, fraction, *arguments)
 
 exact.SOLVER = with_advance(exact.SOLVER, corrupted)
-sys.exit(sim_node.main(sys.argv[1:]))
+sys.exit(sim_node(sys.argv[1:]))
 """
 
 

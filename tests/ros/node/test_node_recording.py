@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
+from stickslip_sim.check.verification import verify
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import Bag, open_bag, read_run
-from stickslip_sim.verify.verification import verify
 from tests.support.node_processes import assert_clean, recording_into, running, with_small_files
 from tests.support.ros_nodes import client
 from tests.support.waiting import DEADLINE, wait_for

@@ -27,13 +27,13 @@ from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.serialization import deserialize_message  # noqa: E402
 from std_msgs.msg import Float64  # noqa: E402
 
-from stickslip_sim.ros.node.inbox import HidingNode, Inbox  # noqa: E402
+from stickslip_sim.ros.node.subscribers import HidingNode, Inbox  # noqa: E402
 
 # lark, which rosidl's Python brings in, imports modules that Python wants to rename.
 pytestmark = [pytest.mark.ros, pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")]
 
 PACKAGE = Path(stickslip_sim.__file__).parent
-INBOX, BOUNDED, PROGRAM = 'ros/node/inbox.py', 'ros/node/bounded_node.py', 'ros/process/program.py'
+INBOX, BOUNDED, PROGRAM = 'ros/node/subscribers.py', 'ros/node/parameters.py', 'ros/programs.py'
 # What rclpy has without documenting it, or as experimental: attributes, methods, modules; and the file that uses each.
 PLACES = {'take_message': INBOX, 'handle': INBOX, 'subscriptions': INBOX, 'create_service': BOUNDED,
           'rclpy.experimental': PROGRAM}
@@ -176,9 +176,9 @@ class TestParameterServices:
         assert node.called == [method], SETTING
 
     def test_a_request_has_one_of_the_lists_that_are_bounded(self) -> None:
-        from stickslip_sim.ros.node.bounded_node import _LISTS
+        from stickslip_sim.ros.node.parameters import _REQUEST_LISTS
         for kind in (GetParameters, SetParameters, SetParametersAtomically):
-            assert set(_LISTS) & set(kind.Request.get_fields_and_field_types()), SERVING
+            assert set(_REQUEST_LISTS) & set(kind.Request.get_fields_and_field_types()), SERVING
 
 
 def trees() -> Iterator[tuple[str, ast.Module]]:

@@ -15,7 +15,7 @@ from sensor_msgs.msg import JointState
 from stickslip_msgs.msg import RigEvent
 from stickslip_msgs.srv import InjectFault
 from stickslip_sim.recording import open_bag
-from stickslip_sim.scene.sections import NODE
+from stickslip_sim.scene.load import NODE
 from tests.support.node_processes import running
 from tests.support.ros2_control_client import (
     SHIPPED,

@@ -92,12 +92,12 @@ def test_scheduling_is_no_part_of_a_scene() -> None:
 
 @pytest.mark.parametrize(('value', 'cores'), [(-1, ()), (1, (1,)), ([1, 0, 1], (0, 1)), ((2,), (2,))])
 def test_cores_are_one_or_a_list(value: object, cores: tuple[int, ...]) -> None:
-    from stickslip_sim.ros.node.scheduling_parameters import cores_of
+    from stickslip_sim.ros.node.listed_parameters import cores_of
     assert cores_of(value) == cores
 
 
 @pytest.mark.parametrize('value', ['1', 1.0, True, [], [0, -1], [0.5], None, -2])
 def test_what_is_no_core_is_refused(value: object) -> None:
-    from stickslip_sim.ros.node.scheduling_parameters import cores_of
+    from stickslip_sim.ros.node.listed_parameters import cores_of
     with pytest.raises(InputError, match='cpu_affinity'):
         cores_of(value)

@@ -8,7 +8,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.ros.node.parameters import scene_at_start
-from stickslip_sim.ros.process.given_parameters import GivenParameters, NodeParameters
+from stickslip_sim.ros.programs import GivenParameters, NodeParameters
 from tests.support.node_processes import running
 from tests.support.ros_nodes import client
 

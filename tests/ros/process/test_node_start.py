@@ -169,9 +169,9 @@ class TestFiles:
 
 
 def test_nothing_is_imported_before_signals_are_taken() -> None:
-    program = ('import os, signal, sys, collections.abc; before = set(sys.modules); import stickslip_sim.ros.sim_node;'
-               ' print(*sorted(set(sys.modules) - before))')
+    program = ('import os, signal, sys, collections.abc; before = set(sys.modules);'
+               'import stickslip_sim.ros.executables; print(*sorted(set(sys.modules) - before))')
     done = subprocess.run([sys.executable, '-c', program], capture_output=True, text=True, timeout=60, check=True)
     assert done.stdout.split() == [
         'stickslip_sim', 'stickslip_sim.core', 'stickslip_sim.core.version', 'stickslip_sim.ros',
-        'stickslip_sim.ros.process', 'stickslip_sim.ros.process.stop_signals', 'stickslip_sim.ros.sim_node']
+        'stickslip_sim.ros.executables', 'stickslip_sim.ros.stop_signals']

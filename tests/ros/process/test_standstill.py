@@ -42,7 +42,7 @@ def never_destroyed(*_: object) -> None:
 
 def impatient() -> None:
     """For `prepare`."""
-    from stickslip_sim.ros.process import standstill
+    from stickslip_sim.ros import standstill
 
     restore_interrupt()
     standstill.GRACE = 3.0

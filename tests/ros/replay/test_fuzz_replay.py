@@ -11,11 +11,11 @@ pytest.importorskip('rclpy')
 from rcl_interfaces.msg import Parameter, ParameterEvent, ParameterType, ParameterValue
 from rclpy.serialization import serialize_message
 
+from stickslip_sim.bags.topics import PARAMETER_EVENTS, RIG_EVENT
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import Topic
-from stickslip_sim.recording.topics import PARAMETER_EVENTS, RIG_EVENT
-from stickslip_sim.rig import RigEventKind
-from stickslip_sim.ros.replay.replayed_orders import Request, is_timeout, request_of
+from stickslip_sim.ros.replay.orders import Request, is_timeout, request_of
+from stickslip_sim.simulation import RigEventKind
 from tests.support.refusals import accepts_or_refuses
 
 from stickslip_msgs.msg import RigEvent  # isort: skip

@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 from mcap.writer import Writer
 
+from stickslip_sim.bags.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, open_run, schema, write_bag
-from stickslip_sim.recording.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from tests.support.busy_machine import judged_by_time
 from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import NodeProcess, assert_clean, running
@@ -30,7 +30,7 @@ from rosgraph_msgs.msg import Clock  # isort: skip
 from std_srvs.srv import SetBool, Trigger  # isort: skip
 
 from stickslip_msgs.msg import SliderState  # isort: skip
-from stickslip_sim.ros.replay.replay_settings import REPLAY_PARAMETERS  # isort: skip
+from stickslip_sim.ros.replay.span import REPLAY_PARAMETERS  # isort: skip
 from stickslip_sim.ros.node.endpoints import message_type, qos  # isort: skip
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]

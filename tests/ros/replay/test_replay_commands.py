@@ -12,11 +12,11 @@ import pytest
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader
 
+from stickslip_sim.bags.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic, recorded_topics
+from stickslip_sim.check.verification import verify
 from stickslip_sim.recording import RECORDED, Bag, flat_layout, open_bag, open_run, read_run
 from stickslip_sim.recording.messages import Packer
-from stickslip_sim.recording.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, Topic, recorded_topics
-from stickslip_sim.rig import RigEventKind
-from stickslip_sim.verify.verification import verify
+from stickslip_sim.simulation import RigEventKind
 from tests.support.busy_machine import judged_by_time
 from tests.support.eventful_runs import eventful_run
 from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running

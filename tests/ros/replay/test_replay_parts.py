@@ -11,12 +11,11 @@ from pathlib import Path
 import pytest
 from mcap.writer import CompressionType, Writer
 
+from stickslip_sim.bags.topics import RECORDED
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import QosProfile, write_bag
 from stickslip_sim.recording.playback import Recording
-from stickslip_sim.recording.topics import RECORDED
-from stickslip_sim.ros.replay.player import Act, Player
-from stickslip_sim.ros.replay.timeline import Timeline
+from stickslip_sim.ros.replay.player import Act, Player, Timeline
 from tests.support.recorded_runs import FACTS, damage, events, samples
 from tests.support.waiting import wait_for
 

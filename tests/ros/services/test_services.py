@@ -11,14 +11,14 @@ import pytest
 
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.outcomes import outcomes_of
+from stickslip_sim.check.verification import verify
+from stickslip_sim.check.what_if import other_run, other_scene
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag, read_run
-from stickslip_sim.rig import Fault
-from stickslip_sim.rig.faults import RULES
 from stickslip_sim.scene import scene_from_values
-from stickslip_sim.verify.verification import verify
-from stickslip_sim.verify.what_if import other_run, other_scene
+from stickslip_sim.simulation import Fault
+from stickslip_sim.simulation.faults import RULES
 from tests.support.node_processes import recording_into
 from tests.support.replays import FIELDS, assert_same_states, made_again
 from tests.support.ros_nodes import Client, node_and_client

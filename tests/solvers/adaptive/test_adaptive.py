@@ -169,6 +169,12 @@ class TestSinusoids:
         event = simulate(TIGHT, paper_axis(RIGID), 0.0, 3.0, force)[0][0]
         assert event.time == pytest.approx(math.asin(0.24 * 350 * 9.80665 / 900.0) / math.pi, rel=1e-12)
 
+    def test_no_crest_is_passed_over_when_steps_have_grown(self) -> None:
+        """The 62 crests before stay below the limit."""
+        force = InputProfile((0.0,), (0.0,), (100.0,), sinusoids=(Sinusoid(700.0, 50.0, 0.0),))
+        event, other = (simulate(solver, paper_axis(RIGID), 0.0, 3.0, force)[0][0] for solver in (TIGHT, EXACT))
+        assert 1.24 < event.time == pytest.approx(other.time, rel=1e-12)
+
 
 class TestItEnds:
     def test_a_guard_at_its_limit_on_entry_does_not_fire_for_ever(self) -> None:

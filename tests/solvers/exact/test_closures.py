@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
-from stickslip_sim.compare.continuity import CONTINUITY
+from stickslip_sim.compare.contact_statements import CONTINUITY
 from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.statement import StatementOutcome
 from stickslip_sim.compare.statements import findings_on

@@ -87,6 +87,17 @@ def test_the_reference_knows_the_directions_of_sines_and_of_kato(contact: Contac
     assert error_of_events(seen, wanted, 2.0) <= 1e-11
 
 
+def test_a_law_that_is_convex_backwards_alone_lets_go_before_it_has_risen() -> None:
+    """Up to half the time constant mu_s outruns the force again: both ends of the search are below the limit."""
+    ahead = replace(paper_axis(RIGID).friction, static=StaticLaw(StaticLawKind.KATO, 0.12, 0.24, 0.2, 0.6))
+    convex = replace(ahead.static, exponent=3.0)
+    axis = replace(paper_axis(RIGID), friction=replace(ahead, backward=replace(ahead, static=convex)))
+    start = InitialState(rest_time=0.0, stretch=-408.0 / axis.drive_stiffness)
+    event, *_ = make(axis, -0.0005, initial=start).advance(instant(0.1))
+    assert (event.kind, event.direction) == (EventKind.BREAKAWAY, -1)
+    assert event.drive_force == pytest.approx(-axis.normal_force * convex.coefficient(event.rest_time), rel=1e-14)
+
+
 @pytest.mark.parametrize('seed', range(20))
 def test_a_mirrored_scene_has_mirrored_events(seed: int) -> None:
     rng = random.Random(seed)

@@ -2,13 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes that once were wrong, each against the 40-digit automaton run on the spot."""
 
+import math
+import random
+from itertools import pairwise
 from typing import Any
 
+import numpy as np
 import pytest
 
+from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
+from stickslip_sim.core.arrays import Numbers
+from stickslip_sim.core.input_profile import constant, ramp
+from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.axes import instant
 from tests.support.stored_objects import exact_run, inputs_of
+from tests.support.stored_runs import stored
 
 OVERDAMPED_SLIP: dict[str, Any] = {
     'axis': {'mass': 16.446948494982106, 'drive_stiffness': 175885.98157369555, 'drive_damping': 170081.97082383372,
@@ -118,3 +127,139 @@ def test_a_command_in_a_long_slip_does_not_depend_on_the_ticks_before_it() -> No
         want = whole.advance(instant(6.0))
         assert [e for i in range(1, 13) for e in split.advance(instant(0.5 * i))] == want
         assert split.sample() == whole.sample()
+
+
+# The engine against an independent automaton at 40 digits (stickslip_sim.reference), event by event.
+#
+# `time_sensitivity` of an event is what the reference measured: seconds of shift per relative unit of rounding in the
+# data; a chaotic or nearly grazing run has a large one, and there no double-precision result can do better.
+
+RUNS = stored()
+ROUNDING = 2.220446049250313e-16
+
+
+@pytest.mark.parametrize('name', RUNS)
+def test_events_equal_the_stored_reference(name: str) -> None:
+    run = RUNS[name]
+    events, want = Simulator(*inputs_of(run['parameters'])).advance(instant(run['duration'])), run['events']
+    assert [(e.kind.name.lower(), e.direction) for e in events] == list(zip(want['kind'], want['direction']))
+    travel = max([abs(float(x) - run['parameters']['initial']['position']) for x in want['position']] or [0.0])
+    size = max(travel, abs(run['parameters']['initial']['position']))
+    force = max([abs(float(x)) for x in want['drive_force']] or [0.0])
+    speed = max([abs(float(x)) for x in want['velocity']] or [0.0])
+    worst = 0.0
+    for i, event in enumerate(events):
+        slack = max(1.0, 16.0 * want['time_sensitivity'][i] * ROUNDING / (1e-12 * run['duration']))
+        worst = max(worst, _error(event.time, want['time'][i], run['duration']) / slack,
+                    _error(event.position, want['position'][i], size) / slack,
+                    _error(event.velocity, want['velocity'][i], speed) / slack,
+                    _error(event.drive_force, want['drive_force'][i], force) / slack)
+        if event.kind.name != 'REVERSE':
+            assert _error(event.friction_force, want['friction_force'][i], force) <= 1e-11 * slack, i
+        if event.kind.name == 'BREAKAWAY':
+            coefficient = float(want['static_coefficient'][i])
+            assert event.static_coefficient == pytest.approx(coefficient, rel=1e-11 * slack), i
+    assert worst <= (1e-11 if name == 'D' else 1e-12)   # D is chaotic: errors grow tenfold every 2 s
+
+
+@pytest.mark.parametrize('name', RUNS)
+def test_states_between_events_equal_the_reference(name: str) -> None:
+    run = RUNS[name]
+    simulator, want = Simulator(*inputs_of(run['parameters'])), run['samples']
+    slack = max([1.0, *(16.0 * s * ROUNDING / (1e-12 * run['duration']) for s in run['events']['time_sensitivity'])])
+    force = max([1e-300, *(abs(float(x)) for x in [*want['drive_force'], *want['friction_force']])])
+    length = max(abs(float(x)) for x in want['position']) or 1.0
+    speed = max(abs(float(x)) for x in want['velocity']) or 1.0
+    for i, time in enumerate(want['time']):
+        simulator.advance(instant(float(time)))
+        sample = simulator.sample()
+        for got, column, scale in ((sample.position, 'position', length), (sample.velocity, 'velocity', speed),
+                                   (sample.drive_force, 'drive_force', force),
+                                   (sample.friction_force, 'friction_force', force)):
+            assert _error(got, want[column][i], scale) <= 1e-11 * slack, (column, time)
+
+
+def test_the_stored_runs_cover_the_model() -> None:
+    assert len(RUNS) >= 40
+    assert {kind for run in RUNS.values() for kind in run['events']['kind']} == {
+        'breakaway', 'coast', 'accelerate', 'decelerate', 'stick', 'reverse', 'knot'}
+    laws = {run['parameters']['friction']['static']['law'] for run in RUNS.values()}
+    assert {'constant', 'exponential'} <= laws
+    for run in RUNS.values():
+        assert all(float(a) <= float(b) for a, b in pairwise(run['events']['time']))
+        assert all(math.isfinite(s) for s in run['events']['time_sensitivity'])
+
+
+def _error(got: float, want: str, scale: float) -> float:
+    """Return |got − want| / scale, with the difference taken in exact arithmetic."""
+    from fractions import Fraction
+    return abs(float(Fraction(got) - Fraction(want))) / (scale or 1.0)
+
+
+# A compliant contact that begins exactly on its limit and is pulled away from it: its force comes back in time.
+#
+# Value and slope of the guard are 0 there, and a ramp of the drive bends it, too.  The force is the sum of a parabola
+# and two exponentials, looked at closely.
+
+LIMIT = 0.25           # mu_s, and mu_k at rest: an arrest lands on the limit
+FRICTION = Friction(StaticLaw(StaticLawKind.CONSTANT, LIMIT, LIMIT), KineticTable((0.0, 1.0), (LIMIT, 0.12)), None)
+LOOKS, PERIODS = 40_000, 4.0
+LIMIT_ROUNDING = 1e-11       # of the limit
+
+
+def force_of(axis: Axis, stretch: float, deflection: float, velocity: float, acceleration: float, times: Numbers
+             ) -> Numbers:
+    """Return what holds the slider from rest on, N: the force of the contact, or of the drive that ends the stick."""
+    contact = axis.contact
+    assert isinstance(contact, CompliantContact)
+    k, d, c, h, m = axis.drive_stiffness, axis.drive_damping, contact.stiffness, contact.damping, axis.mass
+    push, push_rate = k * stretch + d * velocity - c * deflection, k * velocity + d * acceleration   # N, N/s
+    gamma, square = 0.5 * (d + h) / m, (k + c) / m
+    second = k * acceleration / m / square
+    first = (push_rate / m - 2.0 * gamma * second) / square
+    zeroth = (push / m - 2.0 * gamma * first - second) / square
+    root = np.emath.sqrt(gamma ** 2 - square)
+    roots = np.array([-gamma + root, -gamma - root])
+    parts = np.linalg.solve(np.array([[1.0, 1.0], roots]), np.array([-zeroth, -first], complex))
+    free = parts[:, None] * np.exp(roots[:, None] * times)
+    y = (zeroth + (first + 0.5 * second * times) * times + free.sum(axis=0)).real
+    u = (first + second * times + (roots[:, None] * free).sum(axis=0)).real
+    if contact.ends_by_drive:
+        moved = (velocity + 0.5 * acceleration * times) * times - y
+        found: Numbers = k * (stretch + moved) + d * (velocity + acceleration * times - u)
+    else:
+        found = c * (deflection + y) + h * u
+    return found
+
+
+@pytest.mark.parametrize('damped', [False, True])
+@pytest.mark.parametrize('by_drive', [False, True])
+def test_the_first_return_to_the_limit_is_a_break_away(by_drive: bool, damped: bool) -> None:
+    rng = random.Random(f'{by_drive} {damped}')
+    returns = 0
+    for _ in range(250):
+        mass, k, c, normal = (10.0 ** rng.uniform(low, high) for low, high in ((-1, 2), (2, 6), (2, 7), (0, 4)))
+        limit, side, square = LIMIT * normal, rng.choice((-1.0, 1.0)), (k + c) / mass
+        d, h = (10.0 ** rng.uniform(-3, -0.5) * math.sqrt(square) * mass * damped for _ in range(2))
+        inside = limit * (1.0 - 10.0 ** rng.uniform(-3, -0.1))
+        pace = rng.choice((1.0, 0.0, -1.0)) * rng.random() if not (by_drive or damped) else 0.0
+        velocity = pace * limit * math.sqrt(square) / k
+        acceleration = rng.choice((-1.0, 1.0)) * limit * square / k * 10.0 ** rng.uniform(-2, 0.5)
+        stretch, deflection = ((limit, inside) if by_drive else (inside, limit))
+        stretch, deflection = side * stretch / k, side * deflection / c
+        if abs(k * stretch if by_drive else c * deflection) != limit:   # beside its limit by rounding
+            continue
+        axis = Axis(mass, k, d, normal, CompliantContact(c, h, ends_by_drive=by_drive), FRICTION)
+        end = PERIODS * 2.0 * math.pi / math.sqrt(square)
+        simulator = Simulator(axis, InitialState(rest_time=0.0, stretch=stretch, deflection=deflection),
+                              ramp(velocity, acceleration, math.inf), constant(0.0))
+        first = next((event.time for event in simulator.advance(instant(end))), math.inf)
+        times = np.linspace(0.0, end, LOOKS + 1, dtype=np.float64)
+        beyond = np.abs(force_of(axis, stretch, deflection, velocity, acceleration, times)) - limit
+        late = times[beyond > LIMIT_ROUNDING * limit]
+        assert first <= (late[0] if len(late) else math.inf)
+        if first < math.inf:
+            force = force_of(axis, stretch, deflection, velocity, acceleration, np.array([first]))
+            assert np.abs(force) == pytest.approx(limit, rel=LIMIT_ROUNDING)
+        returns += 0.0 < first < math.inf
+    assert returns > 20

@@ -105,7 +105,7 @@ def test_a_sound_run_passes(contact: Contact) -> None:
 
 def test_the_tool_gives_no_figure_of_such_a_run(monkeypatch: pytest.MonkeyPatch,
                                                 capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setattr('stickslip_sim.scene.solver.exact.SOLVER', doctored(event_too_early))
+    monkeypatch.setattr('stickslip_sim.scene.model.exact.SOLVER', doctored(event_too_early))
     assert tool(['simulate', 'paper_fig7', '--duration', '5']) == 4
     reported = capsys.readouterr()
     assert reported.out == ''

@@ -157,7 +157,9 @@ class TestTheGrid:
         free = replace(smooth_axis(), normal_force=0.0, drive_stiffness=0.0, drive_damping=0.0)
         blow = steps('force', [0.0, 0.01031, 0.01062], [0.0, 1e4, 0.0])
         final = simulate(fixed_step.solver('rk4', 1e-3), free, 0.0, 0.02, blow, SLIDING)[1]
-        assert final.velocity == pytest.approx(0.05 + 1e4 * 0.00031 / 350.0, rel=1e-12)
+        gain = 1e4 * 0.00031 / 350.0
+        assert final.velocity == pytest.approx(0.05 + gain, rel=1e-12)
+        assert final.position == pytest.approx(0.05 * 0.02 + gain * (0.02 - 0.5 * (0.01031 + 0.01062)), rel=1e-12)
 
     @pytest.mark.parametrize('step', [1e-3, 7e-4, 0.3, 1.0])
     def test_a_drive_without_friction_and_spring_arrives(self, step: float) -> None:

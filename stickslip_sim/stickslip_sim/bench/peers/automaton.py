@@ -15,8 +15,22 @@ depends on is taken together in a tuple `q`, which machine code keeps in registe
 import math
 
 from ...axis.layout import (
-    CONTACT_DAMPING, CONTACT_STIFFNESS, DAMPING, END_SLOPE, MASS, NORMAL, SEGMENT_COUNT, SEGMENT_FIELDS, SEGMENT_SIZE,
-    STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT, STATIC_TAU, STIFFNESS, TABLE,
+    CONTACT_DAMPING,
+    CONTACT_STIFFNESS,
+    DAMPING,
+    END_SLOPE,
+    MASS,
+    NORMAL,
+    SEGMENT_COUNT,
+    SEGMENT_FIELDS,
+    SEGMENT_SIZE,
+    STATIC_EXPONENT,
+    STATIC_INITIAL,
+    STATIC_LAW,
+    STATIC_LIMIT,
+    STATIC_TAU,
+    STIFFNESS,
+    TABLE,
 )
 from .always_compiled import always_compiled
 from ...friction.static import CONSTANT, EXPONENTIAL, HYPERBOLIC, KATO

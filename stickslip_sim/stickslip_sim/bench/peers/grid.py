@@ -9,9 +9,32 @@ import math
 
 from .always_compiled import always_compiled
 from .automaton import (
-    ACCELERATING, COASTING, DIRECTION, F, F_RATE, Q_BAND, Q_BAND_SLOPE, Q_BREAKPOINT_ABOVE, Q_BREAKPOINT_BELOW,
-    Q_DIRECTION, Q_INITIAL, Q_LOWER, Q_LOWER_SLOPE, Q_MODE, Q_NORMAL, SPEED_SCALE, STICK, TIME, U, V, V_RATE, applied,
-    contact, force_scale, is_compliant, static_margin,
+    ACCELERATING,
+    COASTING,
+    DIRECTION,
+    F,
+    F_RATE,
+    Q_BAND,
+    Q_BAND_SLOPE,
+    Q_BREAKPOINT_ABOVE,
+    Q_BREAKPOINT_BELOW,
+    Q_DIRECTION,
+    Q_INITIAL,
+    Q_LOWER,
+    Q_LOWER_SLOPE,
+    Q_MODE,
+    Q_NORMAL,
+    SPEED_SCALE,
+    STICK,
+    TIME,
+    U,
+    V,
+    V_RATE,
+    applied,
+    contact,
+    force_scale,
+    is_compliant,
+    static_margin,
 )
 from .resets import KNOT, classify, move, note, reset, start
 

@@ -5,15 +5,52 @@
 import math
 
 from ...axis.layout import (
-    BRANCHES, COMPLIANT, CONTACT_STIFFNESS, DAMPING, NORMAL, STATIC_EXPONENT, STATIC_INITIAL, STATIC_LAW, STATIC_LIMIT,
-    STATIC_TAU, STIFFNESS,
+    BRANCHES,
+    COMPLIANT,
+    CONTACT_STIFFNESS,
+    DAMPING,
+    NORMAL,
+    STATIC_EXPONENT,
+    STATIC_INITIAL,
+    STATIC_LAW,
+    STATIC_LIMIT,
+    STATIC_TAU,
+    STIFFNESS,
 )
 from .always_compiled import always_compiled
 from ...core.types import EventKind
 from .automaton import (
-    ACCELERATING, COASTING, DECELERATING, DEFLECTION, DIRECTION, EXCESS, F, F_RATE, MODE, REST, FORCE_ROUNDING, S,
-    SEGMENT, STICK, TIME, TURN, U, V, V_RATE, X, applied, breakpoint_at, contact, friction_lines, inputs,
-    is_compliant, friction_at_rest, motion_of, segment_of, static_coefficient, static_margin,
+    ACCELERATING,
+    COASTING,
+    DECELERATING,
+    DEFLECTION,
+    DIRECTION,
+    EXCESS,
+    F,
+    F_RATE,
+    MODE,
+    REST,
+    FORCE_ROUNDING,
+    S,
+    SEGMENT,
+    STICK,
+    TIME,
+    TURN,
+    U,
+    V,
+    V_RATE,
+    X,
+    applied,
+    breakpoint_at,
+    contact,
+    friction_lines,
+    inputs,
+    is_compliant,
+    friction_at_rest,
+    motion_of,
+    segment_of,
+    static_coefficient,
+    static_margin,
 )
 
 BREAKAWAY, COAST, ACCELERATE = float(EventKind.BREAKAWAY), float(EventKind.COAST), float(EventKind.ACCELERATE)

@@ -10,8 +10,7 @@ from scipy import special
 from ...core.errors import InputError
 from .law_fit import MISSED, Fit, enough_points
 from .measured_curve import FrictionCurve
-from .smooth_fit import fit_smooth
-from .smooth_laws import SMOOTH_FORMS
+from .smooth_fit import SMOOTH_FORMS, fit_smooth
 from .table_fit import fit_table
 
 AS_GOOD = 2.0       # of the criterion: nearer than that, two laws are as good (Burnham and Anderson)

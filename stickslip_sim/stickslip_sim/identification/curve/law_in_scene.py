@@ -12,8 +12,7 @@ from ...scene import Scene, scene_from_values, scene_names
 from ...scene.friction_schema import BACKWARD
 from ...scene.load import values_in_file
 from ...scene.schema import BY_NAME
-from ...scene.text import scene_text
-from ...scene.values import overridden
+from ...scene.values import overridden, scene_text
 from .measured_curve import FrictionCurve
 
 _DIGITS = 6       # far finer than any measured curve

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ...core.arrays import Numbers
 from ...core.errors import InputError
-from ...inputs.units import FORCES, SPEEDS, in_si, named_unit, unit_of
+from ...inputs.csv_table import FORCES, SPEEDS, in_si, named_unit, unit_of
 from ...scene.load import named, read_text
 from ...scene.plausible import FASTEST, MEANT, ROUGHEST
 

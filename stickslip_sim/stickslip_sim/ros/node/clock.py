@@ -7,13 +7,12 @@ from collections.abc import Callable
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 
+from ...bags.topics import CLOCK
 from ...core.errors import InputError
 from ...core.time_grid import NANOSECONDS, Grid
-from ...recording.topics import CLOCK
-from ...rig import StepResult
 from ...scene.model import TimeSettings
-from .conversion import set_stamp
-from .endpoints import publisher
+from ...simulation import StepResult
+from .endpoints import publisher, set_stamp
 
 _PATIENCE = 10 * NANOSECONDS
 

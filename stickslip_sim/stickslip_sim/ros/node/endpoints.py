@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """ROS endpoints made from the one list of topics in `recording.topics`."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
+from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray
+from rcl_interfaces.msg import Parameter as ParameterMessage
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
@@ -24,9 +27,10 @@ from stickslip_msgs.msg import (
     StepTiming,
 )
 
+from ...bags.topics import QosProfile, Topic
 from ...core.errors import InputError
+from ...core.time_grid import NANOSECONDS
 from ...recording import flat_layout
-from ...recording.topics import QosProfile, Topic
 
 _HEADER = 4           # bytes before the content of a serialised message
 COMMAND_SIZE = 4096   # bytes of a message that commands something; one of two joints takes some 200
@@ -109,3 +113,52 @@ def command_reader(topic: Topic) -> Callable[[bytes], float]:
         return value
 
     return read
+
+
+# ROS messages that are sent now and then, to and from plain fields; `publishers` packs those of every step.
+
+_ARRAYS = {'sequence<boolean>': np.bool_, 'sequence<octet>': np.uint8, 'sequence<int64>': np.int64,
+           'sequence<double>': np.float64}
+
+
+def set_stamp(stamp: Time, nanoseconds: int) -> None:
+    """Set a time stamp, ns since 1970."""
+    stamp.sec, stamp.nanosec = divmod(nanoseconds, NANOSECONDS)
+
+
+def run_info_message(fields: Mapping[str, Any]) -> RunInfo:
+    """Return the message with these fields (`recording.messages.run_info`)."""
+    message = RunInfo()
+    for name, value in fields.items():
+        if name == 'header':
+            _fill(message.header.stamp, value['stamp'])
+        elif name == 'start_time':
+            _fill(message.start_time, value)
+        else:
+            setattr(message, name, value)
+    return message
+
+
+def parameter_event(node_name: str, stamp_ns: int, changed: list[ParameterMessage]) -> ParameterEvent:
+    """Return the event that reports changed parameters."""
+    message = ParameterEvent(node=node_name, changed_parameters=changed)
+    set_stamp(message.stamp, stamp_ns)
+    return message
+
+
+def fields_of(message: Any) -> dict[str, Any]:
+    """Return the fields of any message as `recording.MessageCodec` takes them."""
+    return {name: _field(getattr(message, name), kind) for name, kind in message.get_fields_and_field_types().items()}
+
+
+def _field(value: Any, kind: str) -> Any:
+    if hasattr(value, 'get_fields_and_field_types'):
+        return fields_of(value)
+    if kind in _ARRAYS:
+        return np.array(value, dtype=_ARRAYS[kind])
+    return [_field(item, '') for item in value] if kind.startswith('sequence') else value
+
+
+def _fill(message: Any, fields: Mapping[str, Any]) -> None:
+    for name, value in fields.items():
+        setattr(message, name, value)

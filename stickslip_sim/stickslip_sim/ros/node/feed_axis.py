@@ -10,36 +10,31 @@ from rclpy.parameter import Parameter
 
 from stickslip_msgs.srv import Step
 
+from ...bags import topics
 from ...core.errors import InputError, SolverError
 from ...core.time_grid import Grid
-from ...realtime.command_slot import CommandSlot
+from ...realtime.commands import CommandSlot, Watchdog
 from ...realtime.pacing import step_clock
 from ...realtime.step_loop import Sink, StepLoop
 from ...realtime.verdict import verdict
-from ...realtime.watchdog import Watchdog
-from ...recording import RECORDED, RunFacts, messages, topics
+from ...recording import RECORDED, RunFacts, messages
 from ...runs.receipt import CostMeter
 from ...runs.simulated import warm_up
+from ...scene.load import NODE
 from ...scene.model import Scene
-from ...scene.sections import NODE
-from ..diagnostics.periodic_report import PeriodicReport
-from ..diagnostics.rig_events import RigEvents
-from ..diagnostics.run_receipt import run_receipt
-from ..process.given_parameters import GivenParameters
-from ..services.fault_services import FaultServices
-from ..services.record_service import RecordService
-from ..services.standard_services import offer_standard_services
-from ..services.time_services import TimeServices
-from . import conversion
+from ..programs import GivenParameters
+from . import endpoints
 from .clock import ClockIn, ClockOut
-from .deferred_log import DeferredLog
 from .endpoints import publisher
-from .inbox import HidingNode
 from .joints import JointNames, JointStates
+from .listed_parameters import scheduling_of
 from .parameters import SceneNode
-from .publishers import Publishers
-from .scheduling_parameters import scheduling_of
-from .subscribers import Subscribers
+from .periodic_report import PeriodicReport, run_receipt
+from .publishers import DeferredLog, Publishers, RigEvents
+from .record_service import RecordService
+from .standard_services import offer_standard_services
+from .subscribers import HidingNode, Subscribers
+from .time_services import FaultServices, TimeServices
 
 _LEAD = 20_000_000   # ns from the instant that stamps count from to step 0, which finds all prepared then
 
@@ -125,9 +120,9 @@ class FeedAxis(HidingNode, SceneNode):
         def apply() -> None:
             self.loop.rig.change_axis(scene.axis)
             stamp_ns = self._outputs.start_ns + self.loop.time_ns
-            event = conversion.parameter_event(self.get_fully_qualified_name(), stamp_ns,
+            event = endpoints.parameter_event(self.get_fully_qualified_name(), stamp_ns,
                                                [parameter.to_parameter_msg() for parameter in changed])
-            data = self._record_service.recordings.parameter_event(conversion.fields_of(event))
+            data = self._record_service.recordings.parameter_event(endpoints.fields_of(event))
             self._outputs.record(RECORDED.index(topics.PARAMETER_EVENTS), data, self.loop.time_ns, self.loop.step + 1)
 
         if not self.loop.at_boundary(apply):
@@ -184,7 +179,7 @@ class FeedAxis(HidingNode, SceneNode):
             return {'failure': str(error)}
 
     def _publish_run_info(self) -> None:
-        message = conversion.run_info_message(messages.run_info(
+        message = endpoints.run_info_message(messages.run_info(
             RunFacts.of(self.scene), self._now_ns(), self._outputs.begin_ns, self._record_service.recordings.folder))
         self._run_info_out.publish(message)
         self._outputs.record_message(topics.RUN_INFO, message, self.loop.time_ns, max(self.loop.step, 0))

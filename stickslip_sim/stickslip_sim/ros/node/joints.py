@@ -12,12 +12,12 @@ import numpy as np
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
+from ...bags.topics import JOINT_COMMANDS, JOINT_STATES
 from ...core.errors import InputError
 from ...core.time_grid import NANOSECONDS
 from ...recording import MessageCodec
 from ...recording.messages import header
-from ...recording.topics import JOINT_COMMANDS, JOINT_STATES
-from ...rig import Measured, StepResult
+from ...simulation import Measured, StepResult
 from .endpoints import publisher
 from .publishers import Publishers
 

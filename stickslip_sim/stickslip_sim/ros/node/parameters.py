@@ -3,28 +3,142 @@
 """The scene as ROS parameters: declared from the one schema, and checked together whenever any of them changes."""
 
 import math
-from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext, suppress
+from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.exceptions import ParameterException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from ...config.parameter import Parameter as Entry
-from ...core.did_you_mean import suggestion
-from ...core.errors import InputError
+from ...bags.topics import CLOCK
+from ...core.errors import InputError, suggestion
 from ...inputs.profile_file import sections_with_file
 from ...inputs.scene_files import load_scene, scene_with_profiles
-from ...recording.topics import CLOCK
-from ...scene.load import DEFAULT_SCENE, ENDINGS, named, scene_from_values, scene_names
+from ...scene.load import DEFAULT_SCENE, ENDINGS, named, of_a_scene, scene_from_values, scene_names
 from ...scene.model import Scene
+from ...scene.parameter import Parameter as Entry
 from ...scene.plausible import OF_NODE, check_plausible
 from ...scene.schema import BY_NAME, NULL, PARAMETERS
-from ...scene.sections import of_a_scene
-from ..process.given_parameters import GivenParameters, NodeParameters
-from .bounded_node import SIM_TIME, BoundedNode
+from ...scene.values import yaml_value
+from ..environment import refusing, variables
+from ..programs import GivenParameters, NodeParameters
 from .clock import check_sim_time
-from .parameter_requests import changes_of
+
+# A node that answers no endless request: it hears no command, and no Ctrl-C, while it answers one.
+
+SIM_TIME = 'use_sim_time'
+MOST_PARAMETERS = 1000   # that one request may set or ask for: a second or two
+_REQUEST_LISTS = ('parameters', 'names', 'prefixes')
+
+_Answer = Callable[[Any, Any], Any]
+
+
+class BoundedNode(Node):  # type: ignore[misc]
+    """A node with bounded requests, also of the services for parameters, which rclpy makes.
+
+    `given` are its parameters on the command line.  Raises InputError when ROS refuses name, parameters or environment.
+    """
+
+    def __init__(self, name: str, given: GivenParameters) -> None:
+        with refusing('ROS parameters or environment', variables(), ParameterException):
+            super().__init__(name)
+        self.given = given.of(self.get_fully_qualified_name())
+        for path in self.given.passed_over:
+            self.get_logger().warning(f'{path} has no section for {self.get_fully_qualified_name()}')
+        sim_time = self.given.values.get(SIM_TIME)
+        if sim_time not in (None, self.get_parameter(SIM_TIME).value):    # rclpy chose another section
+            super().set_parameters_atomically([Parameter(SIM_TIME, value=sim_time)])
+
+    def is_ready(self) -> bool:
+        """Return whether it may begin."""
+        return True
+
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a parameter; one without a value as such, where rclpy would refuse all that is asked for with it."""
+        if self.has_parameter(name):
+            return self.get_parameter_or(name)
+        parameter: Parameter = super().get_parameter(name)
+        return parameter
+
+    def create_service(self, srv_type: Any, srv_name: str, callback: _Answer, **options: Any) -> Any:
+        """Offer a service; a request with too long a list gets the answer without results, and a warning in the log."""
+        def answer(request: Any, response: Any) -> Any:
+            count = max(len(getattr(request, name, ())) for name in _REQUEST_LISTS)
+            if count <= MOST_PARAMETERS:
+                return callback(request, response)
+            self.get_logger().warning(f'{srv_name} = {count} parameters is refused: must be at most {MOST_PARAMETERS}'
+                                      ' in one request; send several', throttle_duration_sec=1.0)
+            return response
+
+        return super().create_service(srv_type, srv_name, answer, **options)
+
+
+# What a request to set parameters changes, and how it is refused what may not change; the same for every node.
+
+_NOTHING = (None, 'None', 'null')   # what `ros2 param load` sends for a parameter that had no value
+# What may stand for a list of doubles; param load sends some as one text.
+_LISTS = Parameter.Type.INTEGER_ARRAY, Parameter.Type.STRING_ARRAY, Parameter.Type.STRING
+
+
+def changes_of(node: Node, request: Sequence[Parameter], entries: Mapping[str, Entry],
+               in_force: Mapping[str, object]) -> list[Parameter]:
+    """Return the parameters that a request sets, without those that may not change and stay as they are.
+
+    So `ros2 param load` takes what `ros2 param dump` wrote.  Raises InputError on one that may not change and would.
+    """
+    wanted = [promoted(parameter, entries.get(parameter.name)) for parameter in request]
+    return [parameter for parameter in wanted
+            if not _stays(node, parameter, entries.get(parameter.name), in_force.get(parameter.name))]
+
+
+def promoted(parameter: Parameter, entry: Entry | None) -> Parameter:
+    """Return the doubles that are meant by whole numbers, as in a scene file, and by texts of `ros2 param load`."""
+    value: Any = parameter.value
+    kind = entry and entry.type
+    if kind == 'double' and (parameter.type_ == Parameter.Type.INTEGER or _is_loaded(value)):
+        return Parameter(parameter.name, Parameter.Type.DOUBLE, float(value))
+    if kind == 'double_array' and parameter.type_ in _LISTS:
+        numbers = value[1:-1].split(', ') if isinstance(value, str) else value
+        if numbers and (parameter.type_ == Parameter.Type.INTEGER_ARRAY or all(map(_is_loaded, numbers))):
+            return Parameter(parameter.name, Parameter.Type.DOUBLE_ARRAY, [float(number) for number in numbers])
+    return parameter
+
+
+def _is_loaded(value: object) -> bool:
+    """Return whether this is Python's text of a double: `param load` sends inf and 1e-06 as such, and lists of them."""
+    with suppress(ValueError):
+        return isinstance(value, str) and repr(float(value)) == value
+    return False
+
+
+def _stays(node: Node, parameter: Parameter, entry: Entry | None, now: object) -> bool:
+    """Return whether to pass a parameter over, whose value is `now`; raises InputError when it may not change."""
+    name, value = parameter.name, parameter.value
+    if entry is None:
+        if not node.has_parameter(name) or not node.describe_parameter(name).read_only:
+            return False
+        now = node.get_parameter(name).value
+        is_same, text = value == now, str(now).lower()
+    elif now in (None, ()) and value in _NOTHING:
+        return True
+    elif entry.live:
+        return False
+    else:
+        is_same, text = _is_same(entry, value, now), 'left out' if now is None else yaml_value(entry, now)
+    if not is_same:
+        raise InputError(name, value, f'{text}, as at the start',
+                         'it cannot change while the node runs: start the node with another')
+    return True
+
+
+def _is_same(entry: Entry, value: object, now: object) -> bool:
+    try:
+        return entry.checked(value) == now
+    except InputError:
+        return False
+
 
 _MEANT = Entry('meant', 'string_array', None, '', 'parameters of the scene whose values are meant, however unusual',
                live=True)

@@ -5,6 +5,7 @@
 A message that nobody hears and no bag records is not made.
 """
 
+from collections import deque
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -12,14 +13,16 @@ from rclpy.node import Node
 from rclpy.serialization import deserialize_message, serialize_message
 
 from stickslip_msgs.msg import FrictionForce, ModeEvent, SliderState
+from stickslip_msgs.msg import RigEvent as RigEventMessage
 
-from ...core.types import Event, EventKind, Mode, Sample
-from ...recording import flat_layout, topics
+from ...bags import topics
+from ...bags.topics import RECORDED, RIG_EVENT, Topic
+from ...core.types import Event, EventKind, Instant, Mode, Sample
+from ...figures.cycles import EventTally
+from ...recording import flat_layout
 from ...recording.messages import Packer
-from ...recording.topics import RECORDED, Topic
-from ...rig import StepResult
-from ...simulation.cycles import EventTally
-from .endpoints import publisher
+from ...simulation import RigEvent, RigEventKind, StepResult
+from .endpoints import publisher, set_stamp
 
 
 class Recorder(Protocol):
@@ -137,3 +140,78 @@ class _Port:
         self.pack = Packer(topic).pack
         out = publisher(node, topic, depth)
         self.publish, self.is_heard = out.publish, out.get_subscription_count
+
+
+# Log lines of the step loop, written by the thread of the executor: to write one may take longer than a step.
+
+class DeferredLog:
+    """Takes lines from any thread; `write` hands them to `log`, that of a node."""
+
+    def __init__(self, log: Any) -> None:
+        self._log = log
+        self._lines: deque[tuple[bool, str]] = deque()    # whether it warns, and its text
+
+    def info(self, text: str) -> None:
+        """Take a line for information."""
+        self._lines.append((False, text))
+
+    def warning(self, text: str) -> None:
+        """Take a warning."""
+        self._lines.append((True, text))
+
+    def write(self) -> None:
+        """Write what has been taken since the last time."""
+        for _ in range(len(self._lines)):
+            warns, text = self._lines.popleft()
+            if warns:
+                self._log.warning(text)
+            else:    # a line of its own: rclpy refuses to log with two severities from one
+                self._log.info(text)
+
+
+# What happens to the rig, published on `rig_event` and in the bag.
+
+_WARNINGS = (RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_LIMITED)
+_FAULTS = (RigEventKind.FAULT_BEGIN, RigEventKind.FAULT_END, RigEventKind.FAULT_CLEARED)
+_QUIET = 1.0   # s of simulation time between two lines of a kind in the log
+
+
+class RigEvents:
+    """Publishes, records and logs the events of the steps, and those that come from elsewhere."""
+
+    def __init__(self, node: Node, publishers: Publishers, log: DeferredLog) -> None:
+        self._log = log
+        self._publishers = publishers
+        self._publish = publisher(node, RIG_EVENT).publish
+        self._index = RECORDED.index(RIG_EVENT)
+        self._reached = Instant(0.0, 0.0)                # with the latest step
+        self._quiet_until: dict[RigEventKind, float] = {}
+
+    def take(self, result: StepResult) -> None:
+        """Report what happened at the start of a step; called before its state goes out."""
+        if result.step == 0:
+            self._reached = Instant(0.0, 0.0)
+            self._quiet_until.clear()
+        for event in result.rig_events:
+            self.report(result.step, self._reached.nanoseconds, event)
+        self._reached = result.sample.instant
+
+    def report(self, step: int, time_ns: int, event: RigEvent) -> None:
+        """Report an event that holds from the start of a step, which is at that simulation time."""
+        message = RigEventMessage(step=step, time=time_ns * 1e-9, kind=int(event.kind), id=event.id, value=event.value,
+                           count=event.number, text=event.text)
+        if event.fault is not None:
+            message.fault, message.start, message.duration = event.fault.kind, event.fault.start, event.fault.duration
+        set_stamp(message.header.stamp, self._publishers.start_ns + time_ns)
+        data = serialize_message(message)
+        self._publish(data)
+        self._publishers.record(self._index, data, time_ns, step)
+        self._write(time_ns * 1e-9, event)
+
+    def _write(self, time: float, event: RigEvent) -> None:
+        line = f't = {time:g} s: {event.id + ": " if event.id else ""}{event.text}'
+        if event.kind in _FAULTS:
+            self._log.info(line)
+        elif event.kind in _WARNINGS and time >= self._quiet_until.get(event.kind, 0.0):
+            self._quiet_until[event.kind] = time + _QUIET
+            self._log.warning(line)

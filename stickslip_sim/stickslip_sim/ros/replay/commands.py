@@ -2,22 +2,45 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recorded orders into a live axis: by time or by step, as the clock of the axis wants it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from threading import Event
 
 from rclpy.node import Node
 
 from ...core.errors import InputError
 from ...recording.playback import Recording
-from ...scene.sections import NODE
+from ...scene import Scene
+from ...scene.load import NODE
+from ...scene.schema import BY_NAME
 from .live_axis import LiveAxis
-from .lockstep import InLockStep
+from .orders import COMMANDS, InLockStep, InRealTime, order_topics
 from .player import Act, Script
-from .realtime import InRealTime
-from .replay_settings import Settings
-from .replayed_orders import COMMANDS, order_topics
-from .scene_difference import compared_names, difference_between
-from .span import PlayedSpan, chosen_topics
+from .span import PlayedSpan, Settings, chosen_topics
+
+# What a live axis has other than the scene that travels in a recording.
+
+_SHOWN = 3
+_ELSEWHERE = ('scene', 'time', 'clock', 'record', 'timing', 'joint_interface')   # sections without a say in the motion
+
+
+def compared_names(scene: Scene) -> list[str]:
+    """Return the parameters of a recorded scene that decide the motion."""
+    return [name for name in scene.values if name in BY_NAME and name.partition('.')[0] not in _ELSEWHERE]
+
+
+def difference_between(recorded: Scene, live: Mapping[str, object]) -> str:
+    """Return in which parameters a live axis differs from the recorded scene, for people; empty where in none."""
+    found = [f'{name} is {_plain(value)}, not {_plain(recorded.values[name])}' for name, value in live.items()
+             if _plain(value) != _plain(recorded.values[name])]
+    more = f', and {len(found) - _SHOWN} more' if len(found) > _SHOWN else ''
+    return ', '.join(found[:_SHOWN]) + more
+
+
+def _plain(value: object) -> object:
+    """Return a value as ROS and scenes both have it: an empty list is none."""
+    listed = list(value) if hasattr(value, '__iter__') and not isinstance(value, str) else value
+    return None if listed == [] else listed
+
 
 _STRIDE = 0.02    # s of the steady clock that pass with one call of ~/step
 

@@ -18,10 +18,10 @@ from std_srvs.srv import Trigger
 from stickslip_msgs.msg import StepTiming
 from stickslip_msgs.srv import InjectFault, Step
 
+from ...bags.topics import TIMING
 from ...core.errors import InputError
-from ...recording.topics import TIMING
+from ..environment import refusing
 from ..node.endpoints import subscription
-from ..process.environment import refusing
 from .player import StoppedError, wait_until
 
 _PATIENCE = 10.0     # s for the axis to be there

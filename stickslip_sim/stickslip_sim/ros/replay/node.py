@@ -4,26 +4,59 @@
 
 import threading
 import time
+from typing import Any
 
 from rclpy.clock import Clock as RosClock
 from rclpy.clock import ClockType
 from rclpy.duration import Duration
+from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool, Trigger
 
+from ...bags.topics import CLOCK
 from ...core.time_grid import NANOSECONDS
 from ...recording.playback import Recording
-from ...recording.topics import CLOCK
-from ..node.conversion import set_stamp
-from ..node.endpoints import publisher
+from ..node.endpoints import publisher, set_stamp
 from ..node.listed_parameters import ListedNode
-from ..process.given_parameters import GivenParameters
+from ..node.time_services import answer
+from ..programs import GivenParameters
 from .commands import Commands
-from .player import Player, Script
-from .player_services import Services
-from .replay_settings import REPLAY_PARAMETERS, STATES_MODE, Settings
-from .span import chosen_topics, span_of
+from .player import Player, Script, Timeline
+from .span import REPLAY_PARAMETERS, STATES_MODE, Settings, chosen_topics, span_of
 from .states import States
-from .timeline import Timeline
+
+# The services of the replay, with the names that rosbag2's player has for them.
+
+class Services:
+    """~/pause, ~/resume, ~/toggle_paused, ~/set_paused, ~/is_paused, ~/play_next, ~/stop."""
+
+    def __init__(self, node: Node, player: Player, timeline: Timeline) -> None:
+        self._player, self._timeline = player, timeline
+        node.create_service(SetBool, '~/set_paused', lambda request, response: self._pause(request.data, response))
+        node.create_service(Trigger, '~/pause', lambda _, response: self._pause(True, response))
+        node.create_service(Trigger, '~/resume', lambda _, response: self._pause(False, response))
+        node.create_service(Trigger, '~/toggle_paused',
+                            lambda _, response: self._pause(not timeline.is_paused, response))
+        node.create_service(Trigger, '~/is_paused', lambda _, response: self._answer(timeline.is_paused, response))
+        node.create_service(Trigger, '~/play_next', self._play_next)
+        node.create_service(Trigger, '~/stop', self._stop)
+
+    def _pause(self, paused: bool, response: Any) -> Any:
+        self._player.pause(paused)
+        return self._answer(True, response)
+
+    def _answer(self, success: bool, response: Any) -> Any:
+        word = 'paused' if self._timeline.is_paused else 'running'
+        return answer(response, success, f'{word} at {self._timeline.now() * 1e-9:g} s of the recording')
+
+    def _play_next(self, _: Any, response: Any) -> Any:
+        done = self._player.play_next()
+        return answer(response, done, 'the next message goes out' if done else 'refused: call ~/pause first')
+
+    def _stop(self, _: Any, response: Any) -> Any:
+        self._player.ask_to_stop()
+        return answer(response, True, 'the replay ends')
+
 
 NAME = 'replay'
 _PATIENCE = 5.0    # s; what did not fit into shared memory is sent again after 3 s (the heartbeat of Fast DDS)

@@ -2,13 +2,63 @@
 # SPDX-License-Identifier: Apache-2.0
 """What of a recording is played: its topics, and from when to when."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from ...core.errors import InputError
 from ...core.time_grid import NANOSECONDS
 from ...recording.playback import Recording
-from .replay_settings import Settings
+from ...scene.parameter import Parameter
+
+# The parameters of the replay, in the words of `ros2 bag play`, and what they make.
+
+STATES_MODE, COMMANDS_MODE = 'states', 'commands'
+
+REPLAY_PARAMETERS = (
+    Parameter('bag', 'string', '', '', 'folder of the run, or an .mcap file'),
+    Parameter('mode', 'string', STATES_MODE, '', 'states: all that was recorded, onto its topics; commands: the orders'
+              ' that the axis was given, into a live one', choices=(STATES_MODE, COMMANDS_MODE)),
+    Parameter('rate', 'double', 1.0, '', 'seconds of the recording per second', 0.0, 1e6, low_open=True, live=True),
+    Parameter('loop', 'bool', False, '', 'whether to begin anew at the end'),
+    Parameter('start_offset', 'double', 0.0, 's', 'of the recording that are left out at its start', 0.0, 1e9),
+    Parameter('playback_duration', 'double', -1.0, 's', 'of the recording that are played; -1: to its end', -1.0, 1e9),
+    Parameter('delay', 'double', 0.0, 's', 'before it is played, each time', 0.0, 1e6),
+    Parameter('start_paused', 'bool', False, '', 'whether to wait for ~/resume at the start'),
+    Parameter('clock', 'double', 0.0, 'Hz', 'how often /clock is published; 0: not at all', 0.0, 1e4),
+    Parameter('topics', 'string_array', (), '', 'which are played; left out: all'),
+    Parameter('axis', 'string', '', '', 'with mode: commands: the node that takes them; empty: feed_axis in the'
+              ' namespace of the recorded commands'),
+)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The parameters, checked together."""
+
+    bag: str
+    mode: str
+    rate: float
+    loop: bool
+    start_offset: float
+    playback_duration: float
+    delay: float
+    start_paused: bool
+    clock: float
+    topics: tuple[str, ...]
+    axis: str
+
+    @classmethod
+    def of(cls, values: Mapping[str, object]) -> 'Settings':
+        """Return the settings; raises InputError on those that have no meaning together."""
+        settings = cls(**{field.name: values[field.name] for field in fields(cls)})  # type: ignore[arg-type]
+        if not settings.bag:
+            raise InputError('bag', '', 'the folder of a run', 'give it: --ros-args -p bag:=RUN_FOLDER')
+        if settings.mode == COMMANDS_MODE and settings.clock:
+            raise InputError('clock', settings.clock, '0 with mode: commands', 'the axis has the clock')
+        if settings.mode == STATES_MODE and settings.axis:
+            raise InputError('axis', settings.axis, 'left out with mode: states', 'it is for mode: commands')
+        return settings
 
 
 class PlayedSpan(NamedTuple):

@@ -20,18 +20,15 @@ from ...axis.codes import (
     STICK,
     YIELDING,
 )
-from ...axis.forces import drive_force
+from ...axis.forces import drive_force, static_at_once
 from ...axis.layout import Parameters
 from ...axis.records import PLAIN
 from ...axis.rows import Events, SampleRow, Sinusoids
 from ...axis.state_record import State
-from ...axis.static_limits import static_at_once
 from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn, write_event
 from ...core.input_profile import InputProfile
 from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE
-from ..inputs import hold_inputs, refresh_inputs, same_inputs
-from ..sampling import write_sample
-from ..state import begin_state, change_contact, held_force
+from ..stepping import begin_state, change_contact, held_force, hold_inputs, refresh_inputs, same_inputs, write_sample
 from .mode_integration import ModeIntegration, Reached
 from .mode_problem import ModeLoad, ModeMotion, SmoothLaw, Tolerance
 from .smooth_friction import choose_sub_mode, correct_excess, find_segment, slip_friction_force

@@ -24,11 +24,19 @@ from ...axis.codes import (
     STICK,
     YIELDING,
 )
-from ...axis.forces import ROUNDING, holds_by_drive, is_rigid_stick
-from ...axis.friction_segments import breakpoint_speed, friction_line, kinetic_at_rest, segment_above, segment_end
+from ...axis.forces import (
+    ROUNDING,
+    breakpoint_speed,
+    friction_line,
+    holds_by_drive,
+    is_rigid_stick,
+    kinetic_at_rest,
+    segment_above,
+    segment_end,
+    static_limit,
+)
 from ...axis.layout import Parameters
 from ...axis.state_record import State
-from ...axis.static_limits import static_limit
 from ...core.input_profile import InputProfile
 from ...friction.static import CONSTANT
 from ...linear.waves import TURN, phase_at

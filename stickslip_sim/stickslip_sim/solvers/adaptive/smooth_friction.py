@@ -3,8 +3,7 @@
 """Friction at a state, with a smooth law of mu_k in place of the table of the transitions, where there is one."""
 
 from ...axis.codes import ACCELERATING, COASTING, STICK
-from ...axis.forces import applied_force, force_rounding
-from ...axis.friction_segments import friction_line, segment_above
+from ...axis.forces import applied_force, force_rounding, friction_line, segment_above
 from ...axis.layout import Parameters
 from ...axis.mode_entry import choose_slip
 from ...axis.rows import EventRow

@@ -9,7 +9,7 @@ the drive), H a decaying free motion with |H| <= A exp(−d t).
    until the envelope of H leaves room between P and the limit.
 2. From there on the guard less the envelope is concave: positive at both ends of an interval, it has no zero in it.
    The root of the guard is sought directly; a time shortly before it, at which the guard less the envelope is positive
-   and from which on the guard falls for certain, proves that it is the first (`compliant_root.direct_root`).
+   and from which on the guard falls for certain, proves that it is the first (`contact_force.direct_root`).
 3. Without that proof: the root of the guard less the envelope is a time before which nothing can happen, one leap over
    the ring-down; then safe steps again.  Where P is bent or the law not concave, many shorter leaps below the limit
    of now take its place.
@@ -24,21 +24,20 @@ guard is P alone.
 
 import math
 
-from ...axis.forces import force_rounding
+from ...axis.forces import force_rounding, holds_nothing, limit_backwards, static_at_once, static_limit
 from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of
 from ...axis.state_record import State
-from ...axis.static_limits import holds_nothing, limit_backwards, static_at_once, static_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, bound
-from ...linear.polynomials import first_crossing, safe_step
-from ...linear.root_steps import EPSILON
-from .compliant_root import bracketed_root, direct_root
+from ...linear.zeros import EPSILON, first_crossing, safe_step
 from .contact_force import (
     ContactForce,
+    bracketed_root,
     contact_at,
     contact_motion,
     contact_rounding,
+    direct_root,
     envelope_room,
     force_at,
     gives_way,

@@ -13,8 +13,7 @@ functions change `s` in place and return the number of rows in use; `advance` al
 import math
 
 from ...axis.codes import ARREST, BREAKAWAY, COAST, COASTING, KNOT, STICK, YIELDING
-from ...axis.forces import applied_force, drive_force, force_rounding, friction_force
-from ...axis.friction_segments import friction_line, segment_above
+from ...axis.forces import applied_force, drive_force, force_rounding, friction_force, friction_line, segment_above
 from ...axis.layout import Parameters
 from ...axis.mode_entry import choose_slip
 from ...axis.motion import begin_motion, drive_travel, move_start, spring_after, travel
@@ -26,13 +25,11 @@ from ...axis.state_record import State, clear_state
 from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn
 from ...core.hot_path import compiled, inlined
 from .. import DONE, FULL, NO_PROGRESS, UNSOUND
-from ..sampling import write_sample
-from ..state import is_stuck
-from .account import book_contact, book_parameters, book_works, read_account
+from ..stepping import is_stuck, write_sample
 from .search import STAMP, find_event
 from .series_events import RENEWAL
 from .soundness import event_is_sound
-from .works import contact_energy, stored_energy
+from .works import book_contact, book_parameters, book_works, contact_energy, read_account, stored_energy
 
 _SAME_INSTANT = 64   # events without progress in time; a sound model needs three
 

@@ -29,19 +29,15 @@ bit.
 import math
 
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
-from ...axis.forces import ROUNDING, force_rounding
-from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
+from ...axis.forces import ROUNDING, breakpoint_speed, force_rounding, friction_line, lower_limit, segment_end
 from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of
 from ...axis.smooth_load import load_bounds
 from ...axis.state_record import State
-from ...axis.static_limits import lower_limit
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator
-from ...linear.root_steps import EPSILON, ITERATIONS
-from ...linear.zeros import finite_horizon
-from .forced_guards import GuardLimits, guard_at, guard_limits
-from .forced_leaps import leap_of
+from ...linear.zeros import EPSILON, ITERATIONS, finite_horizon
+from .forced_guards import GuardLimits, guard_at, guard_limits, leap_of
 from .signal_readings import read_signal
 from .signals import GuardSignal, signal_of
 from .static_guards import GAVE_UP, is_concave

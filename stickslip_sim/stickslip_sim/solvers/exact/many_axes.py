@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many axes, one after the other: each runs under constant inputs, and only the figures of its cycles are kept.
 
-The figures are those of `simulation.cycles`: `Cycle` and `Summary`, from the same events.
+The figures are those of `figures.cycles`: `Cycle` and `Summary`, from the same events.
 
 A round goes from one break-away out of stick to the next; a slip that reverses at once does not end it.  A round whose
 stick is less than LEAST_STICK of it only touches rest.

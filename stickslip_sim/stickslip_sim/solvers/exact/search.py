@@ -18,17 +18,14 @@ floating point; `soundness` holds each event of a run to it.
 import math
 
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, COAST, COASTING, DECELERATE, KNOT, STICK
-from ...axis.forces import band_of, force_rate
-from ...axis.friction_segments import breakpoint_speed, segment_end
+from ...axis.forces import band_of, breakpoint_speed, force_rate, segment_end
 from ...axis.layout import Parameters
 from ...axis.motion import oscillator_of, tick_integrals, travel_at
 from ...axis.slip_series import moves_by_series
 from ...axis.state_record import State
 from ...core.hot_path import inlined
-from ...linear.polynomials import first_crossing
-from ...linear.root_steps import EPSILON
 from ...linear.roots import first_passage
-from ...linear.zeros import finite_horizon, half_period
+from ...linear.zeros import EPSILON, finite_horizon, first_crossing, half_period
 from .compliant_stick import compliant_stick
 from .forced import forced_event
 from .series_events import RENEWAL, series_event

@@ -22,12 +22,11 @@ In floating point: what falls below 0 by less than δ is no event, and an interv
 import math
 
 from ...axis.codes import ACCELERATING, ARREST, BREAKAWAY, COAST, YIELDING
-from ...axis.forces import force_rounding
-from ...axis.friction_segments import kinetic_at_rest
+from ...axis.forces import force_rounding, kinetic_at_rest
 from ...axis.layout import Parameters
 from ...axis.state_record import HIGHEST_ORDER, State
 from ...core.hot_path import compiled, inlined
-from ...linear.root_steps import EPSILON, ITERATIONS
+from ...linear.zeros import EPSILON, ITERATIONS
 from .forced import passed_kind, speed_gap
 
 RENEWAL = -1.0          # in place of an `types.EventKind`: a new segment start, and no event

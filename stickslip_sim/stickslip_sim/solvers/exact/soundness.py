@@ -11,16 +11,25 @@ What is allowed is far above rounding, and far below what a figure would show.
 import math
 
 from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, STICK, YIELDING
-from ...axis.forces import band_of, contact_force, drive_force, holds_by_drive
-from ...axis.friction_segments import breakpoint_speed, friction_line, segment_end
+from ...axis.forces import (
+    band_of,
+    breakpoint_speed,
+    contact_force,
+    drive_force,
+    friction_line,
+    holds_by_drive,
+    limit_backwards,
+    segment_end,
+    static_at_once,
+    static_limit,
+)
 from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, spring_after, travel
 from ...axis.sinusoids import inputs_at
 from ...axis.smooth_load import normal_force_at, take_load
 from ...axis.state_record import State
-from ...axis.static_limits import limit_backwards, static_at_once, static_limit
 from ...core.hot_path import compiled, inlined
-from .account import balance
+from .works import balance
 
 ALLOWED = 1e-6   # of the throughput of energy; of the forces that add up; of the speeds that were passed
 _ROUNDING = 64.0 * 2.220446049250313e-16   # of forces that add up

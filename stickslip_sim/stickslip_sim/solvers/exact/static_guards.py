@@ -12,14 +12,12 @@ grows or dies out but exp(−t/τ), and where that is 0 the guard is a straight 
 
 import math
 
-from ...axis.forces import applied_force, force_rate
+from ...axis.forces import applied_force, force_rate, static_at_once, static_limit, static_numbers
 from ...axis.layout import Parameters
 from ...axis.state_record import State
-from ...axis.static_limits import static_at_once, static_limit, static_numbers
 from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth
-from ...linear.polynomials import first_crossing, safe_step
-from ...linear.root_steps import EPSILON, halley, householder, householder_settles
+from ...linear.zeros import EPSILON, first_crossing, halley, householder, householder_settles, safe_step
 
 TICK = 0.1         # s; a search no longer than that begins with a bound, which mostly ends it
 STEPS = 100_000

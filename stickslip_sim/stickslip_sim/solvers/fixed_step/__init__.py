@@ -29,8 +29,7 @@ from ...core.errors import InputError
 from ...core.hot_path import entry
 from .. import Solver, SolverOfFunctions
 from . import loop
-from .stability import check_step
-from .steps import EULER, RK4
+from .steps import EULER, RK4, check_step
 
 start, advance = entry(loop.start), entry(loop.advance)
 set_inputs, set_parameters = entry(loop.set_inputs), entry(loop.set_parameters)

@@ -9,20 +9,35 @@ often it is asked for.
 """
 
 from ...axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, DECELERATE, DECELERATING, STICK, YIELDING
-from ...axis.forces import applied_force, drive_force, force_rounding, stick_force
-from ...axis.friction_segments import first_segment, friction_line
+from ...axis.forces import (
+    applied_force,
+    drive_force,
+    first_segment,
+    force_rounding,
+    friction_line,
+    static_at_once,
+    static_limit,
+    stick_force,
+)
 from ...axis.layout import Parameters
 from ...axis.mode_entry import limit_rounding
 from ...axis.motion import yielded_deflection
 from ...axis.rows import Events, SampleRow, Sinusoids
 from ...axis.state_record import State
-from ...axis.static_limits import static_at_once, static_limit
 from ...axis.transitions import apply_inputs, arrest, release, write_event
 from ...core.hot_path import compiled
 from .. import DONE, FULL, OUT_OF_RANGE
-from ..inputs import given_inputs_at, hold_inputs, inputs_vary, refresh_inputs, same_inputs
-from ..sampling import write_sample
-from ..state import begin_state, change_contact, held_force
+from ..stepping import (
+    begin_state,
+    change_contact,
+    given_inputs_at,
+    held_force,
+    hold_inputs,
+    inputs_vary,
+    refresh_inputs,
+    same_inputs,
+    write_sample,
+)
 from .steps import friction_at, segment_near, step
 
 _BAND = 0.5   # of a step of the deceleration by N mu_s(0): stops are noted, on the average, when they happen

@@ -1,0 +1,208 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What checking, verifying and asking what if found: for people, as JSON values and as JUnit XML; SI units."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+from xml.etree import ElementTree
+
+from ..core.types import EventKind
+from ..figures.catalogue import OF_A_CYCLE, head_of, unit_of
+from ..figures.cycles import Summary
+from ..recording import RecordedRun
+from ..report.model import NOTE, Part, Sentence, Table
+from ..report.quantity import quantity
+from ..report.values import json_text
+from ..runs import Run
+from ..runs.samples import reduced
+from ..scene.load import values_in_file
+from ..scene.values import scene_text
+from .measures import TIMING_LIMIT
+from .observed_run import commands_of, gaps_in, observed_motion, timing_of
+from .origin import made_with
+from .outcomes import LimitOutcome
+from .verification import Verdict
+
+_DRAWN = 'position', 'velocity', 'friction_force'   # of what if
+
+
+class Checked(NamedTuple):
+    """A run that was checked, under the name that it has in what is written about it."""
+
+    name: str
+    run: Run
+    outcomes: Sequence[LimitOutcome]
+
+
+def verdict_line(checked: Checked) -> str:
+    """Return passed or failed, of how many, and which failed."""
+    _, run, outcomes = checked
+    failed = failures(outcomes)
+    if failed:
+        return f'FAILED: {len(failed)} of {len(outcomes)}: {", ".join(failed)}'
+    timing = timing_of(run)
+    doubt = ', but the run is not valid in real time' if run.is_complete and timing and timing.valid is False else ''
+    return f'PASSED: {len(outcomes)} of {len(outcomes)}{doubt}'
+
+
+def checked_line(checked: Checked) -> str:
+    """Return what was checked: from when to when, how much is known of it, and when its first command came."""
+    name, run, _ = checked
+    motion, commands = observed_motion(run), commands_of(run)
+    text = (f'{name}: {motion.begin:g} to {motion.end:g} s, {motion.states} states, '
+            f'{len(motion.events)} transitions')
+    if commands is None:
+        return text
+    return f'{text}, {"no command" if commands.first is None else f"first command at t = {commands.first:g} s"}'
+
+
+def real_time_verdict(run: Run) -> str:
+    """Return what the node said of its timing at the end of a run; empty without that."""
+    timing = timing_of(run) if run.is_complete else None
+    return timing.verdict if timing else ''
+
+
+def complaint(checked: Checked, limits_file: str) -> str:
+    """Return in one line why a run did not pass, empty when it did."""
+    name, _, outcomes = checked
+    missed = [outcome.name for outcome in outcomes if not (outcome.passed or outcome.is_unchecked)]
+    unchecked = [outcome.name for outcome in outcomes if outcome.is_unchecked]
+    parts = [f'{name} does not keep {limits_file}: {", ".join(missed)}'] if missed else []
+    if unchecked:
+        parts.append(f'{name}: no drive velocity came within the window of {", ".join(unchecked)}, so that no '
+                     'controller was checked: let the window begin with first_command, or allow that with commands: '
+                     'optional')
+    return '; '.join(parts)
+
+
+def failures(outcomes: Sequence[LimitOutcome]) -> list[str]:
+    """Return the names of the limits that were not kept."""
+    return [outcome.name for outcome in outcomes if not outcome.passed]
+
+
+def line_of(outcome: LimitOutcome) -> str:
+    """Return what was measured, and the limit, in a sentence."""
+    if outcome.limit is None or outcome.value is None:
+        return outcome.remark
+    unit = f' {outcome.limit.kind.unit}'.rstrip()
+    text = f'{outcome.limit.kind.name} = {outcome.value!r}{unit}, limit {outcome.limit.maximum!r}{unit}'
+    return f'{text} ({outcome.remark})' if outcome.remark else text
+
+
+def checks_as_values(runs: Sequence[Checked]) -> dict[str, Any]:
+    """Return everything that was found: of one run, or a list of several."""
+    found = [_found(*checked) for checked in runs]
+    return found[0] if len(found) == 1 else {'passed': all(one['passed'] for one in found), 'runs': found}
+
+
+def _found(name: str, run: Run, outcomes: Sequence[LimitOutcome]) -> dict[str, Any]:
+    motion, commands = observed_motion(run), commands_of(run)
+    return {
+        'run': {'name': name, 'begin': motion.begin, 'end': motion.end, 'states': motion.states,
+                'events': len(motion.events), 'is_complete': run.is_complete, 'notes': list(gaps_in(run)),
+                'first_command': commands.first if commands else None, 'timing': timing_of(run)},
+        'passed': not failures(outcomes),
+        'limits': [_entry(outcome) for outcome in outcomes],
+    }
+
+
+def _entry(outcome: LimitOutcome) -> dict[str, Any]:
+    limit = outcome.limit
+    found = {'name': outcome.name, 'passed': outcome.passed, 'remark': outcome.remark}
+    if limit is None:
+        return {**found, 'check': TIMING_LIMIT}
+    return {**found, 'check': limit.kind.name, 'unit': limit.kind.unit, 'measured': outcome.value,
+            'max': limit.maximum, 'margin': outcome.margin, 'window': outcome.span, **limit.settings}
+
+
+# The outcome as JUnit XML, which CI servers read: one test case for each limit.
+
+def junit_text(runs: Sequence[Checked]) -> str:
+    """Return the file, valid against the schema of Jenkins: a suite for each run, with the name of what was checked.
+
+    The verdict on its timing, if there is one, is a property of the suite.
+    """
+    suites = [_suite(checked) for checked in runs]
+    root = suites[0] if len(suites) == 1 else ElementTree.Element('testsuites')
+    root.extend(suites if len(suites) > 1 else ())
+    ElementTree.indent(root)
+    document: bytes = ElementTree.tostring(root, encoding='utf-8', xml_declaration=True)
+    return document.decode() + '\n'
+
+
+def _suite(checked: Checked) -> ElementTree.Element:
+    name, run, outcomes = checked
+    failed = sum(not outcome.passed for outcome in outcomes)
+    suite = ElementTree.Element('testsuite', name=name, tests=str(len(outcomes)), failures=str(failed), errors='0')
+    if verdict := real_time_verdict(run):
+        properties = ElementTree.SubElement(suite, 'properties')
+        ElementTree.SubElement(properties, 'property', name='real time', value=verdict)
+    for outcome in outcomes:
+        case = ElementTree.SubElement(suite, 'testcase', name=outcome.name, classname=f'stickslip.check.{name}')
+        if outcome.passed:
+            ElementTree.SubElement(case, 'system-out').text = line_of(outcome)
+        else:
+            failure = ElementTree.SubElement(case, 'failure', type='limit', message=line_of(outcome))
+            failure.text = line_of(outcome)
+    return suite
+
+
+# The outcome of a check for people.
+
+def check_report(checked: Checked) -> Iterator[Part]:
+    """Yield the checked run, whether it kept real time, its missing parts, its limits, and the verdict."""
+    yield checked_line(checked)
+    yield from filter(None, [real_time_verdict(checked.run)])
+    yield from (Sentence(note, NOTE) for note in gaps_in(checked.run))
+    yield Table(('limit', 'measured', 'at most', 'margin', '', ''), [*map(_cells, checked.outcomes)], texts=(0, 4, 5))
+    yield verdict_line(checked)
+
+
+def _cells(outcome: LimitOutcome) -> tuple[str, ...]:
+    verdict = 'PASS' if outcome.passed else 'FAIL'
+    if outcome.limit is None or outcome.value is None or outcome.margin is None:
+        return outcome.name, '–', '–', '–', verdict, outcome.remark
+    numbers = (quantity(number, outcome.limit.kind.unit)
+               for number in (outcome.value, outcome.limit.maximum, outcome.margin))
+    return outcome.name, *numbers, verdict, outcome.remark
+
+
+# The verdict on a recording that was run again, and what would have been.
+
+def verdict_report(run: RecordedRun, verdict: Verdict) -> Iterator[Part]:
+    """Yield how much is identical, and what a recording that differs was made with."""
+    amount = f'{verdict.steps} steps, {verdict.events} events'
+    if verdict.missing:
+        yield Sentence(f'{verdict.missing} steps have no recorded state', NOTE)
+    if verdict.difference:
+        yield f'differs after {amount} that are identical'
+        yield f'      recorded with {made_with(run)}'
+    else:
+        extent = 'identical' if run.is_complete else 'identical as far as it goes'
+        yield f'{extent}, {amount}, up to t = {verdict.end:.9g} s'
+
+
+def beside_table(recorded: Summary, other: Summary) -> Table:
+    """Return two runs beside each other: kind of motion, break-aways, means of the last cycles."""
+    both = recorded, other
+    rows = [('motion', *(figures.motion for figures in both)),
+            ('time in stick', *(f'{100.0 * figures.stick_share:.4g} %' for figures in both)),
+            ('break-aways', *(str(figures.events[EventKind.BREAKAWAY]) for figures in both)),
+            ('complete cycles', *(str(figures.cycles) for figures in both))]
+    rows += [(head_of(name), *(quantity(getattr(figures.mean, name), unit_of(name)) if figures.mean else '–'
+                               for figures in both))
+             for name in OF_A_CYCLE if recorded.mean or other.mean]
+    return Table(('', 'recorded', 'what if'), rows, least=(22, 13, 13))
+
+
+def write_what_if(folder: Path, changes: Mapping[str, object], recorded: RecordedRun, other: Run) -> None:
+    """Write picture, figures and scene of what would have been; raises OSError."""
+    from ..plots import plot_beside  # matplotlib takes half a second
+
+    changed = ', '.join(f'{name} = {value}' for name, value in changes.items())
+    was, would_be = (reduced(run.sample_blocks(), [(run.begin, run.end)], _DRAWN) for run in (recorded, other))
+    plot_beside(was, would_be, f'{recorded.title}\nwhat if {changed}', folder / 'what_if.png')
+    figures = {'scene': other.scene.name, 'changes': changes, 'recorded': recorded.summary, 'what_if': other.summary}
+    (folder / 'what_if.json').write_text(json_text(figures, 2), encoding='utf-8')
+    (folder / 'scene.yaml').write_text(scene_text(values_in_file(other.scene)), encoding='utf-8')

@@ -1,0 +1,204 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What verbs have in common: the arguments RUN and RUN_OR_SCENE, the options --set and --meant."""
+
+import functools
+import os
+import warnings
+from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from . import completion
+from .files import Verb
+
+if TYPE_CHECKING:
+    from ..recording import RecordedRun
+    from ..runs import Run
+    from ..scene import Scene
+    from ..study.distribution import Distribution
+    from ..study.sweep import Workers
+    from ..study.variation import Variation
+
+
+verb = functools.partial(click.command, cls=Verb)
+_OF_RUNS, _OF_SCENES = ('.mcap',), ('.yaml', '.yml')
+_OF_A_GLOB = '*?['
+_A_RUN = 'a recorded run, a folder or an .mcap file'
+
+
+def is_recorded(source: str) -> bool:
+    """Return whether this is a recorded run, a folder or an .mcap file; the name of a shipped scene is the scene.
+
+    Raises InputError when it is neither, nor the file of a scene.
+    """
+    from ..scene import scene_names
+
+    path = Path(source)
+    if source in scene_names():
+        return False
+    if not os.path.lexists(path):
+        raise _is_not_there('RUN_OR_SCENE', source, 'a recorded run or a scene', scene_names(), _OF_RUNS + _OF_SCENES)
+    return path.is_dir() or path.suffix in _OF_RUNS
+
+
+def recorded_run(path: str) -> 'RecordedRun':
+    """Return a recorded run; each verb says in its own words what is missing of it.
+
+    Raises RecordingError, and InputError where nothing is.
+    """
+    from ..core.errors import RecordingWarning
+    from ..recording import read_run
+    from .progress import progress_bar
+
+    check_run(path)
+    with warnings.catch_warnings(), progress_bar('reading'):
+        warnings.simplefilter('ignore', RecordingWarning)
+        return read_run(path)
+
+
+def check_sources(sources: Iterable[str], duration: float | None, changes: 'SceneChanges') -> None:
+    """Raise UsageError where --duration and --set have no scene, or a scene has no duration."""
+    recorded = [is_recorded(source) for source in sources]
+    if all(recorded) and (duration is not None or changes.overrides):
+        raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
+    if not all(recorded) and duration is None:
+        raise click.UsageError('--duration S is needed to simulate a scene.')
+
+
+def simulated(source: str, duration: float, changes: 'SceneChanges', each_step: bool = False) -> 'Run':
+    """Return the run of a scene, `each_step` sampled as its node would record it; raises InputError."""
+    from ..runs import simulate, simulate_events
+    from ..runs.simulated import check_run_times
+    from .progress import progress_bar
+
+    check_run_times(duration, None)
+    scene = changes.load(source)
+    with progress_bar('simulating') as progress:
+        return simulate(scene, duration, progress=progress) if each_step else simulate_events(scene, duration, progress)
+
+
+def check_run(path: str) -> None:
+    """Raise InputError unless something is where a recorded run should be."""
+    from ..core.errors import InputError
+    from ..scene import scene_names
+
+    if os.path.lexists(path):
+        return
+    if path in scene_names():
+        raise InputError('RUN', path, _A_RUN, f'this is a scene: record it with stickslip simulate {path} --duration 10'
+                         ' --bag FOLDER')
+    raise _is_not_there('RUN', path, _A_RUN, [], _OF_RUNS)
+
+
+def _is_not_there(name: str, source: str, allowed: str, known: list[str], endings: tuple[str, ...]) -> Exception:
+    """Return what is wrong with a path or name that nothing has, with the nearest one."""
+    from ..core.errors import InputError, paths_beside, suggestion
+
+    if any(letter in source for letter in _OF_A_GLOB):
+        return InputError(name, source, allowed, 'no such run: nothing matches it')
+    words = [] if os.sep in source else known
+    beside = paths_beside(Path(source), endings, folders=True)
+    written = [f'.{os.sep}{word}' if source.startswith(f'.{os.sep}') else word for word in beside]
+    what = 'no such file' if source.endswith(_OF_SCENES) else 'no such run' if not words else 'no such run or scene'
+    meant = suggestion(source, [*words, *written], '')
+    return InputError(name, source, allowed, f'{what}; {meant}' if meant else f'{what}: check the name')
+
+
+# The options --set and --meant of every verb that loads a scene, and the scene with them.
+
+ClickCommand = Callable[..., Any]
+Members = AbstractContextManager['Workers | None']    # that run a study
+
+
+class SceneChanges(NamedTuple):
+    """The values of --set, and the names of --meant."""
+
+    overrides: tuple[str, ...]
+    meant: tuple[str, ...]
+
+    def given(self) -> dict[str, object]:
+        """Return the changed values by dotted name; raises InputError."""
+        from ..scene import parse_override
+
+        return dict(parse_override(override) for override in self.overrides)
+
+    def load(self, name: str) -> 'Scene':
+        """Return a shipped scene or a file with the changes; raises InputError, also on a value to be asked back."""
+        from ..inputs import load_scene
+        from ..scene.load import named
+        from ..scene.plausible import check_plausible
+
+        scene = load_scene(name, self.given())
+        with named(name):
+            check_plausible(scene.values, self.meant)
+        return scene
+
+    def check_changed(self, scene: 'Scene') -> None:
+        """Raise InputError on a value among those of --set to be asked back."""
+        from ..scene.plausible import check_plausible
+
+        check_plausible({name: scene.values.get(name) for name in self.given()}, self.meant)
+
+    def check_ranges(self, ranges: 'Iterable[Variation | Distribution]') -> None:
+        """Raise InputError on an end of a range, or of a distribution, to be asked back."""
+        from ..scene.plausible import check_plausible
+
+        for one in ranges:
+            check_plausible({one.name.partition('[')[0]: (one.low, one.high)}, self.meant)
+
+
+def scene_changes(help_of_set: str) -> Callable[[ClickCommand], ClickCommand]:
+    """Give a command the two options; it takes them as one argument `changes`."""
+    def decorated(command: ClickCommand) -> ClickCommand:
+        @functools.wraps(command)
+        def with_changes(*, changes: tuple[str, ...], meant: tuple[str, ...], **arguments: Any) -> Any:
+            return command(changes=SceneChanges(changes, meant), **arguments)
+
+        asked = click.option('--meant', multiple=True, metavar='A.B', shell_complete=completion.complete_parameters,
+                             help='Its value is meant, however unusual.')
+        return click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help=help_of_set,
+                            shell_complete=completion.complete_parameters)(
+            asked(with_changes))
+    return decorated
+
+
+# The options of every verb that runs a study.
+
+_OPTIONS = (
+    click.option('--out', required=True, metavar='FOLDER', help='Write points.csv (with pandas .parquet too) there.'),
+    click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: until the motion settles].'),
+    click.option('--workers', metavar='N|all', help='Processes to use [default: 1].'),
+    click.option('--scheduler', metavar='ADDRESS', help='Use the workers of this Dask scheduler instead.'),
+    click.option('--resume', is_flag=True, help='Go on with what was interrupted.'),
+    scene_changes('Change a parameter of the scene.'),
+)
+
+
+def study_options(command: ClickCommand) -> ClickCommand:
+    """Give a command the options of every study; it takes those of its workers as one argument `members`."""
+    @functools.wraps(command)
+    def with_members(*, workers: str | None, scheduler: str | None, **arguments: Any) -> Any:
+        return command(members=_members(workers, scheduler), **arguments)
+
+    decorated: ClickCommand = with_members
+    for option in reversed(_OPTIONS):
+        decorated = option(decorated)
+    return decorated
+
+
+def _members(workers: str | None, scheduler: str | None) -> Members:
+    """Return the workers on a study: none but this process, processes, or a cluster; raises InputError, UsageError."""
+    from ..study.cluster import cluster
+    from ..study.resources import process_count
+    from ..study.sweep import processes
+
+    if scheduler is not None:
+        if workers is not None:
+            raise click.UsageError('--workers and --scheduler exclude each other.')
+        return cluster(scheduler)
+    count = process_count('1' if workers is None else workers)
+    return processes(count) if count > 1 else nullcontext()

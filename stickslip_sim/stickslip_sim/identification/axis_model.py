@@ -1,0 +1,319 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The axis with trial values of its free parameters: what it is, and what it does from a known state on."""
+
+import math
+from collections.abc import Sequence
+from copy import copy
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ..axis import CompliantContact, InitialState
+from ..core.arrays import Numbers
+from ..core.errors import InputError, StickslipError
+from ..core.input_profile import InputProfile, constant
+from ..core.time_grid import Instants
+from ..core.types import Event, Instant, Sample
+from ..friction.kinetic import MAX_BREAKPOINTS
+from ..friction.refine import Breakpoint, shape_table
+from ..friction.shapes import Decay, Shape
+from ..scene import Scene
+from ..scene.build import Dynamics, dynamics_of
+from ..scene.friction_schema import backward_name, forward_name
+from ..simulation.simulator import Simulator
+from ..study.variation import changes_at
+from .free_parameters import DELAY, FreeParameter
+from .measured_inputs import shifted, travelled
+from .motions import MeasuredMotion
+from .readings import OUTPUTS, SensorReadings, drives_directly
+
+# Friction of trial values: smooth laws by their tables, without a proof of their error; static not below kinetic.
+#
+# The breakpoints of a table go with the falling part of its law, and so with the trial: a fit with those of the start
+# makes up for their error by wrong numbers, and stays there with those of its end.
+
+Breakpoints = tuple[Breakpoint, ...]
+
+_LAW = 'friction.kinetic.'
+_EXCESS = 'friction.excess.'
+_SMOOTH = 'initial', 'limit', 'stribeck_velocity', 'viscous', 'exponent', 'tolerance'
+_DROPPED = frozenset(_LAW + name for name in _SMOOTH)
+_FALLEN = 0.01       # as `SmoothKinetic.limit_velocity`
+
+
+def with_table(values: dict[str, object], shape: Shape, held: Breakpoints | None = None) -> dict[str, object]:
+    """Return values of a scene with the table of its smooth kinetic law, of a shape, in place of that.
+
+    The breakpoints are those `held`, if any are.  An exponent among the values goes before that of the shape.  Where
+    friction backwards differs it has a table of its own.  Raises InputError where a table takes too many breakpoints.
+    """
+    forwards = {name: value for name, value in values.items() if forward_name(name) == name}
+    changes = {forward_name(name): value for name, value in values.items() if name not in forwards}
+    table = _with_table(forwards, shape, held)
+    back = _with_table(forwards | changes, shape, held) if changes else table
+    return table | {backward_name(name): value for name, value in back.items() if value != table.get(name)}
+
+
+def _with_table(values: dict[str, object], shape: Shape, held: Breakpoints | None) -> dict[str, object]:
+    """Return the same of the values of one direction."""
+    initial, limit, scale, viscous = (float(str(values[_LAW + name])) for name in _SMOOTH[:4])
+    if _LAW + 'exponent' in values:
+        shape = Decay(float(str(values[_LAW + 'exponent'])))
+    points = held or breakpoints_of(values, shape)
+    table = {name: value for name, value in values.items() if name not in _DROPPED}
+    speeds = tuple(scale * z for z, _ in points)
+    table[_LAW + 'law'] = 'table'
+    table[_LAW + 'velocities'] = speeds
+    table[_LAW + 'coefficients'] = (initial, *(limit + (initial - limit) * p + viscous * speed
+                                               for speed, (_, p) in zip(speeds[1:], points[1:])))
+    table[_LAW + 'end_slope'] = viscous
+    end = scale * shape.reach(_FALLEN)
+    if values.get('friction.acceleration_dependence'):
+        if values.get(_EXCESS + 'law', 'table') != 'table':
+            table.setdefault(_EXCESS + 'limit_velocity', end)
+        elif _EXCESS + 'velocities' not in values:
+            table[_EXCESS + 'velocities'], table[_EXCESS + 'fractions'] = (0.0, end), (1.0, 0.0)
+    return table
+
+
+def breakpoints_of(values: dict[str, object], shape: Shape, coarser: float = 1.0) -> Breakpoints:
+    """Return the breakpoints (z, p) of the falling part of a law; raises InputError if they are too many.
+
+    Those of a `coarser` table are for a tolerance so many times as large.
+    """
+    initial, limit, tolerance = (float(str(values[_LAW + name])) for name in ('initial', 'limit', 'tolerance'))
+    return _breakpoints(shape, coarser * tolerance / abs(initial - limit)) if initial != limit else ((0.0, 0.0),)
+
+
+@lru_cache(maxsize=64)
+def _breakpoints(shape: Shape, share: float) -> Breakpoints:
+    found = shape_table(shape, share, MAX_BREAKPOINTS)
+    if found is None:
+        raise InputError('friction.kinetic.tolerance', share, f'large enough for {MAX_BREAKPOINTS} breakpoints',
+                         'raise it')
+    return tuple(found)
+
+
+def put_in_order(values: dict[str, object]) -> None:
+    """Raise static friction to kinetic friction at rest, and its limit to its start, where values have it lower."""
+    kinetic = values.get(_LAW + 'initial')
+    if kinetic is None:
+        coefficients = values[_LAW + 'coefficients']
+        assert isinstance(coefficients, tuple)
+        kinetic = coefficients[0]
+    initial = max(float(str(values['friction.static.initial'])), float(str(kinetic)))
+    values['friction.static.initial'] = initial
+    if 'friction.static.limit' in values:
+        values['friction.static.limit'] = max(float(str(values['friction.static.limit'])), initial)
+
+
+OUTPUT_PLACES = {name: Sample._fields.index(name) for name in OUTPUTS}
+_TOLERANCE = 'friction.kinetic.tolerance'
+_BELOW = 1.0 - 1e-12   # of what the contact holds: rounding must not break it
+
+
+class AxisModel:
+    """What an axis does with trial `values` of its free parameters; the inputs are those that were measured, if any.
+
+    `runs` counts the simulations.  It `is_pushed` when a measured force drives its slider without a spring.
+    """
+
+    def __init__(self, scene: Scene, parameters: Sequence[FreeParameter], measurement: SensorReadings) -> None:
+        self.scene, self._parameters = scene, tuple(parameters)
+        self._own = [k for k, one in enumerate(parameters) if one.sensor is None]
+        self._names = [parameters[k].name for k in self._own]
+        self._take_inputs(measurement)
+        self._keeps_drive = measurement.drive is not None or not any(name.startswith('drive.') for name in self._names)
+        self._keeps_force = not any(one.name.startswith(('force.', 'sensor.external_force.')) for one in parameters)
+        self.is_pushed = measurement.force is not None and drives_directly(scene)
+        self._held: Breakpoints | None = None
+        self._tolerance: float | None = None
+        self.runs = 0
+
+    def hold_table(self, values: Numbers | None, coarser: float = 1.0) -> bool:
+        """Hold the breakpoints of a smooth kinetic law as they are with these values; None: they go with the trial.
+
+        They may be those of a table that is so much `coarser`.  Return whether there is such a law.
+        """
+        law = self.scene.axis.friction.kinetic.law
+        if law is not None:
+            self._held = None if values is None else breakpoints_of(self._values(values), law.shape, coarser)
+        return law is not None
+
+    @property
+    def tolerance(self) -> float | None:
+        """The tolerance of the table of a smooth kinetic law; None without such a law."""
+        own = self.scene.values.get(_TOLERANCE)
+        return self._tolerance or (None if own is None else float(str(own)))
+
+    def take_tolerance(self, tolerance: float | None) -> None:
+        """Take another tolerance of that table than that of the scene; None: that of the scene."""
+        self._tolerance = tolerance
+
+    @property
+    def has_readings(self) -> bool:
+        """Whether an input was measured."""
+        return self._measurement.drive_readings is not None or self._measurement.force_readings is not None
+
+    def with_inputs_read_again(self, random: np.random.Generator) -> 'AxisModel':
+        """Return the model with inputs as other readings of them would have given them, with noise of their own."""
+        measurement = self._measurement
+        drive, force = measurement.drive_readings, measurement.force_readings
+        again = copy(self)
+        again._take_inputs(replace(measurement, drive=drive and drive.read_again(random),
+                                   force=force and force.read_again(random)))
+        return again
+
+    def _take_inputs(self, measurement: SensorReadings) -> None:
+        self._measurement, self._profiles = measurement, dict[object, Any]()
+        force = measurement.force or constant(0.0)
+        self._force = np.array([force.starts, force.values, force.rates])
+
+    def changes(self, values: Numbers) -> dict[str, object]:
+        """Return the changes to the scene that trial values are, with static friction not below kinetic."""
+        own = self._values(values)
+        return {name: own[name] for name in own if own[name] != self.scene.values.get(name)}
+
+    def dynamics(self, values: Numbers) -> Dynamics | None:
+        """Return the axis and its inputs with trial values; None where these contradict each other."""
+        try:
+            found = dynamics_of(self._with_table(self._values(values)))
+        except StickslipError:
+            return None
+        force = self._measurement.force
+        if force is not None and not self._keeps_force:
+            force = self._force_of(values)
+        return found._replace(drive=self._measurement.drive or found.drive, force=force or found.force)
+
+    def _with_table(self, values: dict[str, object]) -> dict[str, object]:
+        law = self.scene.axis.friction.kinetic.law
+        return values if law is None else with_table(values, law.shape, self._held)
+
+    def delay(self, values: Numbers) -> float:
+        """Return how long after its readings the measured force acts, s."""
+        return float(sum(value for one, value in zip(self._parameters, values.tolist(), strict=True)
+                         if one.sensor == ('external_force', DELAY)))
+
+    def _force_of(self, values: Numbers) -> InputProfile:
+        """Return the force that acted, from what its sensor measured."""
+        offset, scale = self.gain(values, 'external_force')
+        starts, forces, rates = self._force
+        starts, forces, rates = starts + self.delay(values), (forces - offset) / scale, rates / scale
+        first = max(int(np.searchsorted(starts, 0.0, 'right')) - 1, 0)
+        if starts[0] > 0.0:   # up to there the first reading holds
+            starts, forces, rates = (np.append(one, numbers) for one, numbers in (
+                (0.0, starts), (forces[0], forces), (0.0, rates)))
+        begin = forces[first] - rates[first] * starts[first]
+        return InputProfile((0.0, *starts[first + 1:].tolist()), (float(begin), *forces[first + 1:].tolist()),
+                            tuple(rates[first:].tolist()))
+
+    def _values(self, values: Numbers) -> dict[str, object]:
+        """Return the values of the scene, those of the free parameters among them."""
+        own = {**self.scene.values, **changes_at(self.scene.values, self._names, values[self._own])}
+        if self._tolerance is not None:
+            own[_TOLERANCE] = self._tolerance
+        put_in_order(own)
+        return own
+
+    def start_force(self, values: Numbers) -> float:
+        """Return the drive force at the start as its sensor would measure it, N."""
+        own, (offset, scale) = self._values(values), self.gain(values, 'drive_force')
+        stiffness, damping, stretch, velocity = (float(str(own[name])) for name in (
+            'axis.drive_stiffness', 'axis.drive_damping', 'initial.stretch', 'initial.velocity'))
+        drive = self._measurement.drive or self.scene.drive
+        return offset + scale * (stiffness * stretch + damping * (drive.value_at(0.0) - velocity))
+
+    def drive_of(self, values: Numbers) -> InputProfile:
+        """Return the velocity of the drive: as it was measured, or with trial values."""
+        found = self.dynamics(values)
+        return self.scene.drive if found is None else found.drive
+
+    def gain(self, values: Numbers, channel: str) -> tuple[float, float]:
+        """Return offset and scale of the sensor of a channel."""
+        gain = {'offset': 0.0, 'scale': 1.0}
+        for one, value in zip(self._parameters, values.tolist(), strict=True):
+            if one.sensor is not None and one.sensor[0] == channel and one.sensor[1] in gain:
+                gain[one.sensor[1]] = value
+        return gain['offset'], gain['scale']
+
+    def state_after(self, motion: MeasuredMotion, dynamics: Dynamics, values: Numbers) -> InitialState:
+        """Return the state at the end of a measured motion: at rest, the spring as far stretched as it must be."""
+        offset, scale = self.gain(values, 'position')
+        position = (motion.stop - offset) / scale
+        gone = self._travelled(dynamics.drive, motion.end)
+        stretch = dynamics.initial.stretch + gone - (position - dynamics.initial.position)
+        deflection = 0.0
+        if isinstance(dynamics.axis.contact, CompliantContact) and not dynamics.axis.contact.undeflected:
+            friction = dynamics.axis.friction.along(motion.direction)
+            normal = dynamics.axis.normal_force + (dynamics.load.value_at(motion.end) if dynamics.load else 0.0)
+            held = min(friction.kinetic.coefficients[0], friction.static.initial) * normal
+            deflection = _BELOW * motion.direction * held / dynamics.axis.contact.stiffness
+        return InitialState(position, 0.0, 0.0, stretch, deflection)
+
+    def samples(self, dynamics: Dynamics, begin: float, initial: InitialState, at: Instants) -> Numbers | None:
+        """Return rows of samples from a state at `begin` (s) on, at times since then; None if the solver gives up."""
+        rows = np.empty((len(at.seconds), len(Sample._fields)))
+        duration = float(at.seconds[-1] + at.fractions[-1])
+        try:
+            self._simulator(dynamics, begin, initial, duration).take_samples(at, rows, with_events=False)
+        except StickslipError:
+            return None
+        return rows
+
+    def motion(self, dynamics: Dynamics, begin: float, initial: InitialState, duration: float
+               ) -> 'TrialMotion | None':
+        """Return the motion from a state at `begin` (s) on, for a duration, s; None where the solver gives up."""
+        second = math.floor(duration)
+        try:
+            simulator = self._simulator(dynamics, begin, initial, duration)
+            return TrialMotion(self, simulator, simulator.advance(Instant(second, duration - second)))
+        except StickslipError:
+            return None
+
+    def _simulator(self, dynamics: Dynamics, begin: float, initial: InitialState, duration: float) -> Simulator:
+        self.runs += 1
+        load = shifted(dynamics.load, begin, duration) if dynamics.load else None
+        return Simulator(dynamics.axis, initial, self._from(dynamics.drive, 'drive', begin, duration),
+                         self._from(dynamics.force, 'force', begin, duration), load=load)
+
+    def _from(self, profile: InputProfile, which: str, begin: float, duration: float) -> InputProfile:
+        """Return a profile from a time on; kept, where no free parameter changes it."""
+        if begin == 0.0:
+            return profile
+        kept = self._keeps_drive if which == 'drive' else self._keeps_force
+        if not kept:
+            return shifted(profile, begin, duration)
+        key = which, begin, duration
+        if key not in self._profiles:
+            self._profiles[key] = shifted(profile, begin, duration)
+        found: InputProfile = self._profiles[key]
+        return found
+
+    def _travelled(self, drive: InputProfile, time: float) -> float:
+        if not self._keeps_drive:
+            return float(travelled(drive, np.array([time]))[0])
+        key = 'travelled', time
+        if key not in self._profiles:
+            self._profiles[key] = float(travelled(drive, np.array([time]))[0])
+        return float(self._profiles[key])
+
+
+class TrialMotion:
+    """A motion from a known state on: its `events`, and samples, both at times since then."""
+
+    def __init__(self, model: AxisModel, simulator: Simulator, events: Sequence[Event]) -> None:
+        self._model, self._simulator, self.events = model, simulator, events
+
+    def samples(self, at: Instants) -> Numbers | None:
+        """Return rows of samples at times up to its end; None where the solver gives up."""
+        self._model.runs += 1
+        rows = np.empty((len(at.seconds), len(Sample._fields)))
+        try:
+            self._simulator.reset()
+            self._simulator.take_samples(at, rows, with_events=False)
+        except StickslipError:
+            return None
+        return rows

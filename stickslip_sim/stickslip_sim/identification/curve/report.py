@@ -1,0 +1,135 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""What `stickslip friction` prints: the curve as it was read, the laws by rank, and the chosen one with its doubts."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from ...report.quantity import counted
+
+if TYPE_CHECKING:
+    from .best_law import Fits
+    from .law_fit import Fit
+    from .measured_curve import FrictionCurve, Units
+
+_PATTERN = 0.05   # a chance below it is called a pattern
+_DIFFER = 3.0     # standard errors
+_ENOUGH = 12      # points for a law of four parameters
+
+
+def curve_lines(curve: str, measured: 'FrictionCurve', units: 'Units') -> list[str]:
+    """Return what was read, in SI, so that a wrong unit is seen."""
+    speeds, coefficients = measured.speeds, measured.coefficients
+    forward = int(measured.forward.sum())
+    count = len(speeds)
+    where = {count: '', 0: ', all backward'}.get(forward, f', {forward} forward and {count - forward} backward')
+    read = 'a coefficient' if units.force is None else f'{units.force}, over {units.normal_force:g} N'
+    lines = [f'{curve}: {count} points{where}',
+             f'{"read as":22} {units.speed} and {read}',
+             f'{"speed":22} {speeds.min():g} to {speeds.max():g} m/s',
+             f'{"coefficient":22} {coefficients.min():.4g} to {coefficients.max():.4g}']
+    return lines + ([f'{"not read":22} {counted(measured.unread, "more column")}'] if measured.unread else [])
+
+
+def fit_lines(fits: 'Fits') -> list[str]:
+    """Return a table of the laws by rank, and what the rank means."""
+    from .law_fit import MISSED, SPARE
+
+    best = fits.by_rank[0]
+    lines = [f'{"law":12}{"parameters":>11}{"rms residual":>15}{"largest":>11}{"AICc":>10}{"above best":>12}']
+    for fit in fits.by_rank:
+        lines.append(f'{fit.name:12}{fit.count:11}{fit.rms:15.3g}{abs(fit.residuals).max():11.3g}'
+                     f'{fit.criterion:10.1f}{fit.criterion - best.criterion:12.1f}')
+    lines += [f'{name:12}{"":11} not fitted: AICc wants {SPARE} points more than a law has parameters, and as many '
+              'speeds' for name in fits.left_out]
+    lines += [f'best: {best.name}, by the lowest AICc, n ln(SSE/n) + 2k + 2k(k+1)/(n-k-1); k counts the parameters '
+              'and the variance']
+    if fits.passed_over:
+        lines.append(f'not best, for all its lower AICc: {", ".join(fits.passed_over)}; its rms residual is above '
+                     f'{100.0 * MISSED:.0f} % of the range of the points')
+    if len(best.curve.speeds) < _ENOUGH:
+        lines.append(f'fewer than {_ENOUGH} points: the criterion then favours laws of few parameters'
+                     + ('; --law takes another' if len(fits.by_rank) > 1 else ''))
+    if fits.as_good:
+        lines.append(f'as good, within 2 of it: {", ".join(fits.as_good)}; these points do not decide between them')
+    return lines
+
+
+def fitted_law_lines(fit: 'Fit') -> list[str]:
+    """Return the parameters of a law with their intervals, and what the residuals say."""
+    from ...scene.schema import BY_NAME
+    from .best_law import sides, sign_changes
+
+    lines = [f'{fit.name:22} {"value":>12}   95 % interval']
+    intervals = fit.intervals()
+    for name, value in _values(fit).items():
+        unit = BY_NAME[f'friction.kinetic.{name.partition("[")[0]}'].unit
+        lines.append(f'{name:22} {value:12.5g}   {_interval(name, fit, intervals)} {unit}'.rstrip())
+    signs = sign_changes(fit)
+    few = f'{counted(signs.changes, "change")} of sign along the speed'
+    if signs.least >= _PATTERN:
+        lines.append(f'{"residuals":22} {few}: too few points to tell a pattern from noise')
+    else:
+        verdict = 'a pattern that this law misses' if signs.chance < _PATTERN else 'no pattern'
+        lines.append(f'{"residuals":22} {few}; noise has as few in {100.0 * signs.chance:.3g} % of cases: {verdict}')
+    both = sides(fit)
+    lines += [f'{side.name:22} {side.ratio:.4f} ± {side.error:.4f} of the curve, mean of {side.points} points'
+              for side in both]
+    if any(abs(side.ratio - 1.0) > _DIFFER * side.error for side in both):
+        lines.append('the directions differ: fit them one by one, --direction forward --out SCENE.yaml, then '
+                     '--backward --scene SCENE.yaml')
+    return lines + _rest_lines(fit) + _miss_lines(fit)
+
+
+def points_lines(scene: Mapping[str, object], measured: 'FrictionCurve') -> list[str]:
+    """Return what `--law points` writes."""
+    speeds, coefficients = scene['velocities'], scene['coefficients']
+    assert isinstance(speeds, tuple)
+    assert isinstance(coefficients, tuple)
+    lines = [f'{"points":22} a table of {counted(len(speeds), "breakpoint")}, joined by straight segments: not fitted',
+             f'{"end_slope":22} {scene["end_slope"]:12.5g} s/m, beyond the last speed']
+    slowest = float(measured.speeds.min())
+    return lines + ([] if slowest == 0.0 else [f'{"at rest":22} {coefficients[0]:12.5g} as at the slowest point, '
+                                              f'{slowest:g} m/s: not measured'])
+
+
+def _rest_lines(fit: 'Fit') -> list[str]:
+    """Return a line that says from where a curve without a point at rest was extrapolated."""
+    slowest = float(fit.curve.speeds.min())
+    if slowest == 0.0:
+        return []
+    return [f'{"at rest":22} {fit.at_rest:.4g} is extrapolated: the slowest point is {slowest:g} m/s, the highest '
+            f'measured coefficient {fit.curve.coefficients.max():.4g}']
+
+
+def _miss_lines(fit: 'Fit') -> list[str]:
+    """Return a warning when a law misses the points, unless enough of them show that it is noise."""
+    from .best_law import sign_changes
+    from .law_fit import MISSED
+
+    if fit.miss <= MISSED or (len(fit.curve.speeds) >= _ENOUGH and sign_changes(fit).chance >= _PATTERN):
+        return []
+    return [f'WARNING: {fit.name} misses the points by {100.0 * fit.miss:.0f} % of their range (rms): they scatter as '
+            'much, or it has not their shape; --law points writes the points themselves']
+
+
+def _values(fit: 'Fit') -> dict[str, float]:
+    """Return the numbers of a law by name, the breakpoints of a table among them."""
+    values: dict[str, float] = {}
+    for name, value in fit.scene.items():
+        if isinstance(value, tuple):
+            values.update({f'{name}[{k}]': number for k, number in enumerate(value)})
+        elif isinstance(value, float):
+            values[name] = value
+    return values
+
+
+def _interval(name: str, fit: 'Fit', intervals: dict[str, tuple[float, float] | None]) -> str:
+    if name in ('initial', 'coefficients[0]') and fit.extrapolates:
+        return f'none: extrapolated, no point below {fit.curve.speeds.min():g} m/s'
+    if name in fit.held:
+        return 'at an end of its range'
+    if name not in intervals:
+        return 'chosen' if name.startswith('velocities') else 'given'
+    found = intervals[name]
+    return 'not determined by these points' if found is None else f'{found[0]:.5g} to {found[1]:.5g}'

@@ -1,0 +1,197 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Friction over speed straight from a measurement: what is left of the forces on the slider while it slips.
+
+    F = F_d + F_e − m ẍ
+
+The drive force is that of its sensor, or of the identified drive spring between measured positions; mass and sensor
+errors are the identified ones.  Speed and acceleration are those of polynomials through stretches of the position
+(Savitzky and Golay, 1964), a tenth of a slip long, so that noise of the position does not drown them.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.arrays import Numbers
+from ..figures.slips import SLIP_TIMES, SlipRows, slips_of
+from ..runs import Run
+from .identified import Identification
+
+_STRETCH = 0.1      # of a slip
+_FEWEST = 7         # rows of a stretch
+_DEGREE = 3
+_SLOWEST = 0.05     # of the highest speed: where a run states no threshold, as of an imported one
+_BINS = 24
+_IN_A_BIN = 8       # points, or more
+
+
+class FrictionPoints(NamedTuple):
+    """Speeds (m/s, >= 0) and coefficients of all readings within slips."""
+
+    speeds: Numbers
+    coefficients: Numbers
+
+
+class FrictionBins(NamedTuple):
+    """Readings by speed: the middle speed of each bin (m/s), the median coefficient, and the quartiles."""
+
+    speeds: Numbers
+    medians: Numbers
+    low: Numbers
+    high: Numbers
+
+
+NOTHING = FrictionPoints(np.empty(0), np.empty(0))
+
+
+def friction_points(run: Run, found: Identification, direction: float = 0.0) -> FrictionPoints:
+    """Return the friction at each reading within a slip, of both directions (0) or one; nothing without a force."""
+    times, drawn = _even(corrected(run, found))
+    if len(times) < 2 * _FEWEST:
+        return NOTHING
+    period = times[1] - times[0]
+    rough = _smooth(drawn['position'], _FEWEST, 1) / period if 'position' in drawn else drawn['velocity']
+    slips = list(slips_of(rough, _threshold(run, rough)))
+    if not slips:
+        return NOTHING
+    window = _window(slips)
+    velocity, acceleration = _motion(drawn, window, period)
+    force = _force(drawn, found, velocity, acceleration, window, period)
+    if force is None:
+        return NOTHING
+    rows = np.concatenate([np.arange(slip.first + window // 2, slip.end - window // 2) for slip in slips])
+    loads = loads_at(found, times[rows])
+    kept = (loads > 0.0) & (velocity[rows] * direction >= 0.0)
+    rows, loads = rows[kept], loads[kept]
+    return FrictionPoints(np.abs(velocity[rows]), np.sign(velocity[rows]) * force[rows] / loads)
+
+
+def loads_at(found: Identification, times: Numbers) -> Numbers:
+    """Return the normal force on the slideway at times of the measurement (n,), N."""
+    if found.scene.normal_load is None:
+        return np.full(len(times), found.scene.axis.normal_force)
+    profile = found.scene.normal_force
+    return np.array([profile.value_at(time) for time in (times - found.shift).tolist()])
+
+
+def binned(points: FrictionPoints) -> FrictionBins:
+    """Return medians and quartiles of the points by speed, in bins with as many points each."""
+    speeds, coefficients = points
+    count = min(_BINS, len(speeds) // _IN_A_BIN)
+    if count < 1:
+        return FrictionBins(*[np.empty(0)] * 4)
+    order = np.argsort(speeds)
+    parts = np.array_split(order, count)
+    quartiles = np.array([np.percentile(coefficients[part], (25.0, 50.0, 75.0)) for part in parts])
+    return FrictionBins(np.array([np.median(speeds[part]) for part in parts]), quartiles[:, 1], quartiles[:, 0],
+                        quartiles[:, 2])
+
+
+def corrected(run: Run, found: Identification) -> dict[str, Numbers]:
+    """Return the columns that were measured without the sensor errors that were found: (measured − offset) / scale."""
+    values = found.values
+    columns: dict[str, Numbers] = {}
+    for name, column in run.samples.items():
+        if np.isfinite(column).any():
+            offset = values.get(f'sensor.{name}.offset', 0.0)
+            columns[name] = (np.asarray(column) - offset) / values.get(f'sensor.{name}.scale', 1.0)
+    return columns
+
+
+def _even(columns: Mapping[str, Numbers]) -> tuple[Numbers, dict[str, Numbers]]:
+    """Return the columns at even times, as far apart as the readings are in the median."""
+    times = columns['time']
+    period = float(np.median(np.diff(times)))
+    even = times[0] + period * np.arange(int((times[-1] - times[0]) / period) + 1)
+    known = {name: np.isfinite(column) for name, column in columns.items()}
+    return even, {name: np.interp(even, times[known[name]], column[known[name]]) for name, column in columns.items()
+                  if name != 'time'}
+
+
+def _threshold(run: Run, velocity: Numbers) -> float:
+    stated = getattr(run, 'stick_velocity', None)
+    highest = float(np.abs(velocity).max())
+    return min(_SLOWEST * highest if stated is None else float(stated), highest / (2.0 * SLIP_TIMES))
+
+
+def _window(slips: list[SlipRows]) -> int:
+    """Return how many rows a stretch has: an odd number."""
+    rows = float(np.median([slip.end - slip.first for slip in slips]))
+    return max(_FEWEST, 2 * int(_STRETCH * rows / 2.0) + 1)
+
+
+def _motion(drawn: Mapping[str, Numbers], window: int, period: float) -> tuple[Numbers, Numbers]:
+    """Return speed and acceleration, those of a sensor of their own where there is one."""
+    if 'velocity' in drawn and 'position' not in drawn:
+        velocity = _smooth(drawn['velocity'], window, 0)
+        acceleration = _smooth(drawn['velocity'], window, 1) / period
+    else:
+        velocity = _smooth(drawn['position'], window, 1) / period
+        acceleration = _smooth(drawn['position'], window, 2) / period**2
+    return velocity, acceleration
+
+
+def _force(drawn: Mapping[str, Numbers], found: Identification, velocity: Numbers, acceleration: Numbers, window: int,
+           period: float) -> Numbers | None:
+    """Return the friction force, positive against a motion along +x; None where no force is known."""
+    axis = found.scene.axis
+    if 'friction_force' in drawn:
+        return drawn['friction_force']
+    if 'drive_force' in drawn:
+        drive = drawn['drive_force'] - axis.slideway_damping * velocity
+    elif 'drive_position' in drawn and 'position' in drawn:
+        feed = axis.feed_share * _smooth(drawn['drive_position'], window, 1) / period
+        drive = (axis.drive_stiffness * (drawn['drive_position'] - drawn['position'])
+                 + axis.drive_damping * (feed - velocity))
+    else:
+        return None
+    return np.asarray(drive + drawn.get('external_force', 0.0) - axis.mass * acceleration)
+
+
+def _smooth(values: Numbers, window: int, derivative: int) -> Numbers:
+    from scipy.signal import savgol_filter
+
+    return np.asarray(savgol_filter(values, window, _DEGREE, derivative))
+
+
+# Where in its cycle a reading stands: a share of the time from one measured break-away to the next.
+
+def measured_break_aways(found: Identification) -> Numbers:
+    """Return the times of the measured break-aways, s."""
+    return np.array([slip.time for slip in found.slips if math.isfinite(slip.time)], dtype=np.float64)
+
+
+def phases(found: Identification, times: Numbers) -> Numbers:
+    """Return the share of the cycle at each time (n,), NaN before the first break-away and after the last."""
+    begins = measured_break_aways(found)
+    shares = np.full(len(times), np.nan)
+    if len(begins) > 1:
+        cycle = np.searchsorted(begins, times, side='right') - 1
+        inside = (cycle >= 0) & (cycle < len(begins) - 1)
+        begin, end = begins[cycle[inside]], begins[cycle[inside] + 1]
+        shares[inside] = (times[inside] - begin) / (end - begin)
+    return shares
+
+
+def slip_share(found: Identification) -> float:
+    """Return the share of a cycle after which its slip has ended, in the median; 0 where it is not known."""
+    begins = measured_break_aways(found)
+    sticks = np.array([slip.stick_time for slip in found.slips if math.isfinite(slip.time)], dtype=np.float64)[1:]
+    periods = np.diff(begins)
+    known = np.isfinite(sticks) & (sticks < periods)
+    return float(np.median(1.0 - sticks[known] / periods[known])) if known.any() else 0.0
+
+
+def usual_cycles(found: Identification, count: int = 2) -> tuple[float, float]:
+    """Return from when to when some cycles are that take as long as most do, s; without cycles the last tenth."""
+    times, begins = found.channels[0].times, measured_break_aways(found)
+    lengths = begins[count:] - begins[:-count]
+    if not len(lengths):
+        return float(times[-1] - 0.1 * (times[-1] - times[0])), float(times[-1])
+    usual = int(np.abs(lengths - np.median(lengths)).argmin())
+    margin = 0.05 * lengths[usual]
+    return (max(float(begins[usual] - margin), float(times[0])),
+            min(float(begins[usual + count] + margin), float(times[-1])))

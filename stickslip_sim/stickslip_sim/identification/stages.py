@@ -1,0 +1,279 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The way from a start far off to the best fit: single slips from many starts, stretches, and the whole run.
+
+The sum of squares over a whole run has a minimum wherever another number of slips fits into it.  The figures of single
+slips, each from a measured arrest, have few; what they find is near enough for the samples of the same stretches, and
+these for longer ones, up to the whole run, which knows the parameters best.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.arrays import Numbers
+from .certainty import certainty_of
+from .fit_problem import FitProblem, Stretches
+from .least_squares import STEP, Solution, minimise, steps_over_jumps
+from .motions import MeasuredMotion
+from .residual_tests import is_rejected
+from .starts import N_STARTS, ROBUST
+
+StageProgress = Callable[[str, float], None]
+
+_SAMPLES = 4000         # about so many are enough until the last stage
+_FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
+_MOST_STEPS = 60
+_NEARER = 10.0          # of the sum of squares: so much nearer a finer table must be,
+_MOVES = 0.3            # or so far, in standard deviations, move a number
+_ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
+_FINER, _FINEST = 1 / 256, 1e-7   # times the tolerance of a table: a sixteenth of its steps; and a tolerance
+_COARSER = 1.0, 1.0, 1.33, 1.6   # times the tolerance of a table that is held, in rounds
+_NEAR = 1e4             # a mean square up to which a table may bar the way in any case
+_FAR = 0.5              # of the sum of squares: so much it must gain far from the run
+_OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
+_GOOD = 1.2             # a mean square up to that
+_LOST = 100.0           # a mean square from which on the whole run is not followed
+_BESIDE = 0.01, 0.02, 0.04, 0.08   # of a number, or of its range
+_FEW_STEPS = 4          # of a fit of the others beside it
+_TRIED = 40             # values of a parameter over its range
+
+
+class Ended(NamedTuple):
+    """A start, and where the fit from it ended: one that `is_off` is rejected by a test, one that `is_lost` by far.
+
+    `tolerance` is that of the table of its smooth kinetic law, where it is finer than that of the scene.
+    `of_slips` has the mean square of the figures of single slips where these alone were fitted (`best_of_slips`); one
+    that `is_along` the run was moved to where the position follows it (`along_the_run`).
+    """
+
+    start: Numbers
+    solution: Solution
+    is_off: bool
+    is_lost: bool
+    tolerance: float | None = None
+    of_slips: float | None = None
+    is_along: bool = False
+
+
+def fit_from(problem: FitProblem, start: Numbers) -> Ended:
+    """Return the best fit of the whole run from a point near it."""
+    if problem.is_direct:   # the filtered residuals lead there, from any point where it breaks away as it did
+        nearer = _beyond_noise(problem, start)
+        return _whole_from(problem, start, start if nearer is None else nearer)
+    ended = _whole_from(problem, start, _nearer(problem, start))
+    ahead = _ahead(problem, start) if ended.is_lost else None
+    if ahead is None:
+        return ended
+    return min(ended, _whole_from(problem, start, ahead), key=lambda end: end.solution.cost)
+
+
+def _whole_from(problem: FitProblem, start: Numbers, point: Numbers) -> Ended:
+    """Return the best fit of the whole run near a point, to which a start has led."""
+    problem.model.take_tolerance(None)
+    solution = _of_whole(problem, point)
+    if (better := _beyond_noise(problem, solution.point)) is not None:
+        solution = _of_whole(problem, better)
+    for _ in range(_ROUNDS):
+        if (better := _beside(problem, solution)) is None:
+            break
+        solution = _of_whole(problem, better)
+    for _ in range(_ROUNDS):
+        before = solution.cost
+        if not problem.take_input_noise_of(problem.values(solution.point)):
+            break
+        solution = _of_whole(problem, solution.point)
+        if abs(solution.cost - before) < _GAIN:
+            break
+    return _by_finer_table(problem, _ended(problem, start, _polished(problem, solution)))
+
+
+def _by_finer_table(problem: FitProblem, ended: Ended) -> Ended:
+    """Return the fit with a finer table of a smooth law, where it is nearer to the run or moves the numbers.
+
+    The table of the scene may leave more out of the law than a sensor sees, or than an interval is wide.
+    """
+    tolerance, before = problem.model.tolerance, ended.solution
+    if tolerance is None or tolerance <= _FINEST or not _is_near(problem, before.point):
+        return ended
+    finer = max(_FINER * tolerance, _FINEST)
+    problem.model.take_tolerance(finer)
+    solution = _polished(problem, _of_whole(problem, before.point))
+    if _makes_a_difference(problem, before, solution):
+        return _ended(problem, ended.start, solution)._replace(tolerance=finer)
+    problem.model.take_tolerance(None)
+    return ended
+
+
+def _makes_a_difference(problem: FitProblem, before: Solution, after: Solution) -> bool:
+    """Return whether a fit is nearer to the run than the one before, or as near with other numbers."""
+    deviations = certainty_of(before.information, 1.0, problem.parameters).deviations
+    moves = float(np.max(np.abs(after.point - before.point) / deviations))
+    return after.cost < before.cost - _NEARER or (moves > _MOVES and after.cost < before.cost + _NEARER)
+
+
+def _ended(problem: FitProblem, start: Numbers, solution: Solution) -> Ended:
+    return Ended(start, solution, is_rejected(problem, solution.point), is_lost(problem, solution.point))
+
+
+def _is_near(problem: FitProblem, point: Numbers) -> bool:
+    """Return whether what is off may be by the table of a smooth law."""
+    return worst_square(problem, point) <= _NEAR or not is_lost(problem, point)
+
+
+def _nearer(problem: FitProblem, start: Numbers) -> Numbers:
+    """Return a point from which the whole run may be fitted: by single slips, then by ever more of them as one."""
+    stride = max(1, len(problem.measurement.times) // _SAMPLES)
+    single = problem.stretches(0, stride)
+    near = problem.stretches(0, stride, _not_followed(problem, start, single))
+    point = _fitted_to(problem, start, near, ROBUST).point
+    wrong = _not_followed(problem, point, single)
+    for first in (first for first in _FIRST_SLIPS if first < len(problem.motions)):
+        point = _fitted_to(problem, point, problem.stretches(first, stride, wrong), np.inf).point
+    return point
+
+
+def _ahead(problem: FitProblem, start: Numbers) -> Numbers | None:
+    """Return such a point by ever more slips from the start of the run on, and nothing else; None where one is lost.
+
+    Where a contact rings on, what was taken for rests is none, and leads away from the best fit.
+    """
+    stride, point = max(1, len(problem.measurement.times) // _SAMPLES), start
+    problem.model.take_tolerance(None)
+    for first in (first for first in _FIRST_SLIPS if first < len(problem.motions)):
+        part = problem.stretches(first, stride, problem.motions)
+        point = _fitted_to(problem, point, part, np.inf).point
+        if is_lost(problem, point, part):
+            return None
+    return point
+
+
+def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
+    whole = problem.stretches()
+    residuals, steps = partial(problem.of_stretches, stretches=whole), problem.steps
+    search = partial(minimise, residuals, region=problem.region, most=_MOST_STEPS, tolerance=1e-3,
+                     far=max(_NEAR, *_lost_from(problem)) * len(whole.rows) * len(whole.targets))
+    found = search(start, step=steps)
+    while problem.model.is_pushed:
+        before, steps = steps, steps_over_jumps(residuals, found.point, problem.region, steps)
+        if np.array_equal(steps, before):
+            break
+        found = search(found.point, step=steps)
+    return found
+
+
+def _polished(problem: FitProblem, found: Solution) -> Solution:
+    """Return a better end of a fit that has not come to rest, or follows the run but is not good.
+
+    One that does not follow it goes on as long as each round gains by far.
+    The table of a smooth law has now and then a breakpoint more or less, a step that bars the way: held as it is, it
+    lets the fit by.  Where the breakpoints themselves make a minimum, those of a coarser table do not.
+    """
+    for coarser in _COARSER:
+        square, lost = worst_square(problem, found.point), is_lost(problem, found.point)
+        if found.is_settled and (square < _GOOD or not _is_near(problem, found.point)):
+            break
+        has_table = problem.model.hold_table(problem.values(found.point), coarser)
+        again = _of_whole(problem, found.point)
+        is_settled = again.is_settled
+        if has_table:
+            problem.model.hold_table(None)
+            again = _of_whole(problem, again.point)
+        gained = found.cost - again.cost
+        if gained > 0.0:
+            found = again
+        if gained < (_FAR * found.cost if lost else _GAIN):
+            found = found._replace(is_settled=is_settled or found.is_settled)
+            if not has_table or square < _GOOD or not _is_near(problem, found.point):
+                break
+    return found
+
+
+def worst_square(problem: FitProblem, point: Numbers) -> float:
+    """Return the mean square of the weighted residuals of the whole run, of the channel where it is the largest."""
+    return float(np.max(_mean_squares(problem, point, problem.stretches())))
+
+
+def is_lost(problem: FitProblem, point: Numbers, part: Stretches | None = None) -> bool:
+    """Return whether a fit does not follow the whole run, or a part: beside the noise, and beside a slip."""
+    return bool(np.any(_mean_squares(problem, point, part or problem.stretches()) >= _lost_from(problem)))
+
+
+def _lost_from(problem: FitProblem) -> list[float]:
+    """Return the mean square of each channel from which on it is not followed."""
+    return [max(_LOST, (problem.roughly(channel) / channel.resolution)**2) for channel in problem.measurement.channels]
+
+
+def _mean_squares(problem: FitProblem, point: Numbers, part: Stretches) -> Numbers:
+    """Return the mean square of the weighted residuals of a part of the run, of each channel (c,)."""
+    channels = problem.measurement.channels
+    residuals = problem.of_stretches(point, part)[:-len(point)].reshape(len(channels), -1)
+    squares = np.array([own @ own / channel.weights[part.rows].sum()
+                        for own, channel in zip(residuals, channels, strict=True)])
+    return np.where(np.isfinite(squares), squares, np.inf)
+
+
+def _fitted_to(problem: FitProblem, start: Numbers, part: Stretches, robust: float) -> Solution:
+    return minimise(partial(problem.of_stretches, stretches=part), start, problem.region, most=10, tolerance=1.0,
+                    share=1e-3, robust=robust)
+
+
+def _not_followed(problem: FitProblem, point: Numbers, single: Stretches) -> list[MeasuredMotion]:
+    """Return the motions after which a stretch is far off while most are near: what ended there was no rest."""
+    squares = problem.mean_squares(point, single)
+    limit = max(_OFF, _TIMES_OFF * float(np.median(squares)))
+    return [part.before for part, square in zip(single.parts, squares) if part.before is not None and square > limit]
+
+
+def _beyond_noise(problem: FitProblem, point: Numbers) -> Numbers | None:
+    """Return a point that is better than one, by a parameter whose derivative is that of noise.
+
+    The sum of squares over such a one has steps, on which a fit comes to rest: its whole range is tried, and then what
+    is about the best.
+    """
+    residuals = partial(problem.of_stretches, stretches=problem.stretches())
+    best, left = point, residuals(point)
+    cost = float(left @ left) if np.isfinite(left[0]) else np.inf
+    for k in np.flatnonzero(problem.steps > STEP):
+        low, high = problem.region.low[k], problem.region.high[k]
+        for _ in range(2):
+            for number in np.linspace(low, high, _TRIED):
+                trial = problem.region.holding(int(k), float(number)).inside(best)
+                left = residuals(trial)
+                if np.isfinite(left[0]) and float(left @ left) < cost:
+                    best, cost = trial, float(left @ left)
+            step = (high - low) / (_TRIED - 1)
+            low, high = max(best[k] - step, low), min(best[k] + step, high)
+    return None if best is point else best
+
+
+def _beside(problem: FitProblem, found: Solution) -> Numbers | None:
+    """Return a point that is better than where a fit ended, by such a parameter a little off and all others with it.
+
+    Where single break-aways hold a number, its neighbours seem worse until the others have followed.
+    """
+    residuals, best = partial(problem.of_stretches, stretches=problem.stretches()), found
+    for k in np.flatnonzero(problem.steps > STEP):
+        for share in (*_BESIDE, *(-share for share in _BESIDE)):
+            number = found.point[k] + share * (1.0 if problem.parameters[k].logarithmic else problem.widths[k])
+            if not problem.region.low[k] <= number <= problem.region.high[k]:
+                continue
+            trial = minimise(residuals, found.point, problem.region.holding(int(k), float(number)), most=_FEW_STEPS,
+                             tolerance=1.0, share=1e-3, step=problem.steps)
+            if trial.cost < best.cost - _NEARER:
+                best = trial
+    return None if best is found else best.point
+
+
+def best_fit(ends: Iterator[Ended], progress: StageProgress) -> list[Ended]:
+    """Return the ends of the fits that were made, the best first; others are tried while a test rejects each."""
+    ended: list[Ended] = []
+    progress('fit', 0.0)
+    for k, end in enumerate(ends, 1):
+        progress('fit', k / (1 + N_STARTS))
+        ended.append(end)
+        if not end.is_off:
+            break
+    return sorted(ended, key=lambda end: end.solution.cost)

@@ -1,0 +1,108 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The executables: each takes the signals before anything else, also before the imports that take long."""
+
+import sys
+from collections.abc import Callable, Sequence
+
+from .stop_signals import Signals
+
+TYPE_CHECKING = False    # as in the package: `typing` is not imported before it is needed
+if TYPE_CHECKING:
+    from .programs import GivenParameters
+
+_SIM_NODE = """\
+usage: sim_node [--help] [--ros-args [--params-file SCENE.yaml] [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]
+
+Simulates a feed axis with stick-slip friction in real time (node feed_axis).  Without a file it runs the scene
+paper_fig8; -p scene:=NAME takes another shipped one, -p record.enabled:=true records a bag from the start.
+"""
+_REPLAY_NODE = """\
+usage: replay_node [--help] --ros-args -p bag:=RUN_FOLDER [-p NAME:=VALUE]... [-r TOPIC:=OTHER]...
+
+Plays a recorded run (node replay): all its topics for viewers, or with -p mode:=commands the orders it was given, into
+a live sim_node.  The other parameters are named as the flags of ros2 bag play: rate, loop, start_offset,
+playback_duration, clock, delay, start_paused, topics.
+"""
+_HEALTH = """\
+usage: health [--help] [--ros-args [-p patience:=S] [-r __ns:=/NAMESPACE]]
+
+Waits for what the axis in this namespace says of itself in /diagnostics, once a second.  Exit code 0: all is well, or
+there are warnings; 1: there is an error, or it says nothing.
+"""
+_CONTROLLER = """\
+usage: {0} [--help] [--ros-args [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]
+
+{1}
+Hears joint_states and answers on joint_commands, which the axis speaks with joint_interface.enabled:=true.
+"""
+
+
+def sim_node(args: Sequence[str] | None = None) -> int:
+    """Run until SIGINT or SIGTERM; return the exit code: 0 ended, 1 internal error, 2 refused start or broken bag."""
+    def run(given: 'GivenParameters', signals: Signals) -> None:
+        from .node.feed_axis import FeedAxis
+        from .programs import spin
+
+        node = FeedAxis(given, lambda: signals.stop)
+        spin(node, signals, lambda: node.loop.crash is not None, node.log.write)
+        if node.loop.crash is not None:
+            raise node.loop.crash
+
+    return _live('sim_node', _SIM_NODE, run, args)
+
+
+def replay_node(args: Sequence[str] | None = None) -> int:
+    """Run to the end of the recording, or until SIGINT or SIGTERM; return the exit code as `sim_node` does."""
+    def run(given: 'GivenParameters', signals: Signals) -> None:
+        from .programs import spin
+        from .replay.node import Replay
+
+        node = Replay(given)
+        spin(node, signals, lambda: node.player.is_over)
+        if node.player.crash is not None:
+            raise node.player.crash
+
+    return _live('replay_node', _REPLAY_NODE, run, args)
+
+
+def health(args: Sequence[str] | None = None) -> int:
+    """Ask once; return the exit code: 0 well, 1 unwell or not there, 2 refused start."""
+    def run(given: 'GivenParameters', signals: Signals) -> None:
+        from .health_node import Listener
+        from .programs import spin
+
+        listener = Listener(given)
+        spin(listener, signals, lambda: listener.is_over)
+        sys.stdout.write(listener.verdict() + '\n')
+
+    return _live('health', _HEALTH, run, args)
+
+
+def cascade_controller(args: Sequence[str] | None = None) -> int:
+    """Run until SIGINT or SIGTERM; return the exit code: 0 ended, 1 internal error, 2 refused start."""
+    what = 'Lets the slider follow positioning moves with a cascade: P position, PI velocity, velocity feed-forward.'
+    return _controller('cascade_controller', what, False, args)
+
+
+def compensating_controller(args: Sequence[str] | None = None) -> int:
+    """Run as `cascade_controller` does, with the friction compensated."""
+    what = 'Lets the slider follow positioning moves with a cascade whose friction is compensated.'
+    return _controller('compensating_controller', what, True, args)
+
+
+def _controller(name: str, what: str, compensates: bool, args: Sequence[str] | None) -> int:
+    def run(given: 'GivenParameters', signals: Signals) -> None:
+        from .controllers.controller_node import ControllerNode
+        from .programs import spin
+
+        spin(ControllerNode(name, compensates, given), signals)
+
+    return _live(name, _CONTROLLER.format(name, what), run, args)
+
+
+def _live(name: str, usage: str, run: 'Callable[[GivenParameters, Signals], None]', args: Sequence[str] | None) -> int:
+    signals = Signals()
+    from .programs import Program, live
+
+    return live(sys.argv[1:] if args is None else args, signals, Program(name, usage, run))

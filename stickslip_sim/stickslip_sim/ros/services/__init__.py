@@ -1,3 +1,0 @@
-# Copyright 2026 The stickslip authors
-# SPDX-License-Identifier: Apache-2.0
-"""The services of the node."""

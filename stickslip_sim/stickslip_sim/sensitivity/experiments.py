@@ -1,0 +1,165 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""Feeds by what their runs would say of parameters: the one that narrows them most is proposed."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.arrays import Numbers
+from ..core.errors import InputError, SolverError
+from ..core.types import Progress
+from ..scene import Scene, changed
+from ..study.variation import number_at
+from .candidate_feeds import Feed, feeds
+from .information import SHARE_MOVED, Sensors, Slopes, covariance_after, run_slopes
+from .moved_number import moved_number
+
+_MOST_PARAMETERS = 20
+_MOST_SAMPLES = 1_000_000
+D_OPTIMAL, A_OPTIMAL = 'D', 'A'
+CRITERIA = {D_OPTIMAL: 'volume that is left to the parameters (D-optimal)',
+            A_OPTIMAL: 'mean square of the deviations (A-optimal)'}
+
+
+@dataclass(frozen=True)
+class Wishes:
+    """What an experiment is to be: the parameters that it is for, its duration (s), speeds (m/s), and bounds.
+
+    `known` is the deviation of each parameter before, a share, and `scatter` that from slip to slip.  `travel` (m) is
+    the most that the drive may go, from its one end to the other.
+    """
+
+    parameters: tuple[str, ...]
+    duration: float
+    speeds: tuple[float, float]
+    sensors: Sensors
+    known: float
+    scatter: float
+    travel: float
+    criterion: str
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """A feed and its run: its derivatives, the covariance (k, k) of the logarithms after it, and the drive's way, m.
+
+    `score` is the deviation that the criterion stands for, a share: the lower the better.
+    """
+
+    feed: Feed
+    slopes: Slopes
+    covariance: Numbers
+    travel: float
+    score: float
+
+    @property
+    def deviations(self) -> Numbers:
+        """The deviation (k,) of each parameter after the run, a share."""
+        return np.sqrt(np.diag(self.covariance))
+
+
+@dataclass(frozen=True)
+class Design:
+    """The experiments of a scene, the best first, and the feeds that were left out, with the reason."""
+
+    scene: Scene
+    wishes: Wishes
+    experiments: tuple[Experiment, ...]
+    left_out: tuple[tuple[Feed, str], ...]
+
+    @property
+    def best(self) -> Experiment:
+        """The experiment that narrows the parameters most."""
+        return self.experiments[0]
+
+    @property
+    def best_of_kinds(self) -> list[Experiment]:
+        """The best experiment of each kind of feed, the best first."""
+        kinds: dict[str, Experiment] = {}
+        for one in self.experiments:
+            kinds.setdefault(one.feed.kind, one)
+        return list(kinds.values())
+
+
+def designed(scene: Scene, wishes: Wishes, progress: Progress = None) -> Design:
+    """Return the experiments that a scene allows, by what they would say; raises InputError."""
+    exact = changed(scene, {'solver.name': 'exact'})
+    _check(exact, wishes)
+    times = np.arange(1, round(wishes.duration * wishes.sensors.rate) + 1) / wishes.sensors.rate
+    found: list[Experiment] = []
+    left_out: list[tuple[Feed, str]] = []
+    candidates = feeds(wishes.speeds, wishes.duration)
+    for count, feed in enumerate(candidates, 1):
+        try:
+            one = _experiment(feed, exact, wishes, times)
+        except (InputError, SolverError) as error:
+            left_out.append((feed, str(error)))
+        else:
+            if one.travel <= wishes.travel:
+                found.append(one)
+            else:
+                left_out.append((feed, f'its drive goes {one.travel:.3g} m'))
+        if progress:
+            progress(count / len(candidates))
+    if not found:
+        reasons = '; '.join(sorted({reason for _, reason in left_out}))
+        raise InputError('--travel', wishes.travel, f'such that a feed is left ({reasons})', 'allow more')
+    return Design(scene, wishes, tuple(sorted(found, key=lambda one: one.score)), tuple(left_out))
+
+
+def _experiment(feed: Feed, scene: Scene, wishes: Wishes, times: Numbers) -> Experiment:
+    moved = feed.scene(scene)
+    deviations = wishes.sensors.deviations
+    slopes = run_slopes(moved, list(wishes.parameters), times, list(deviations))
+    covariance = covariance_after(slopes, deviations, wishes.known, wishes.scatter)
+    way = np.append(0.0, slopes.samples['drive_position'] - moved.initial.position)
+    return Experiment(feed, slopes, covariance, float(np.ptp(way)), _score(covariance, wishes.criterion))
+
+
+def _score(covariance: Numbers, criterion: str) -> float:
+    count = len(covariance)
+    if criterion == A_OPTIMAL:
+        return math.sqrt(float(np.trace(covariance)) / count)
+    return math.exp(0.5 * float(np.linalg.slogdet(covariance)[1]) / count)
+
+
+def _check(scene: Scene, wishes: Wishes) -> None:
+    """Raise InputError unless the wishes have a meaning."""
+    names, sensors = wishes.parameters, wishes.sensors
+    if not 1 <= len(names) <= _MOST_PARAMETERS or len(set(names)) < len(names):
+        raise InputError('--for', ','.join(names), f'1 to {_MOST_PARAMETERS} parameters, each once',
+                         'for example friction.static.time_constant,friction.static.limit')
+    for name in names:
+        _check_parameter(scene, name)
+    low, high = wishes.speeds
+    for option, value, good, allowed in (
+            ('--duration', wishes.duration, 0.0 < wishes.duration <= 1e5, '> 0 and <= 1e5 s'),
+            ('--rate', sensors.rate, 0.0 < sensors.rate <= 1e6, '> 0 and <= 1e6 Hz'),
+            ('--speeds', f'{low:g}:{high:g}', 0.0 < low < high <= 1e6, 'LOW:HIGH with 0 < LOW < HIGH, in m/s'),
+            ('--resolution', sensors.resolution, 0.0 <= sensors.resolution < math.inf, 'finite and >= 0 m'),
+            ('--noise', sensors.noise, 0.0 <= sensors.noise < math.inf, 'finite and >= 0 m'),
+            ('--force-noise', sensors.force_noise, _is_noise(sensors.force_noise), 'finite and > 0 N'),
+            ('--known', wishes.known, 0.0 < wishes.known <= 10.0, '> 0 and <= 10, a share of each parameter'),
+            ('--scatter', wishes.scatter, 0.0 <= wishes.scatter <= 1.0, 'from 0 to 1, a share of each parameter'),
+            ('--travel', wishes.travel, wishes.travel > 0.0, '> 0 m')):
+        if not good:
+            raise InputError(option, value, allowed, 'give a value in this range')
+    if sensors.deviations['position'] == 0.0:
+        raise InputError('--resolution', 0.0, '> 0 m where --noise is 0', 'no reading is exact: give one of them')
+    if not 1 <= round(wishes.duration * sensors.rate) <= _MOST_SAMPLES:
+        raise InputError('--rate', sensors.rate, f'such that there are 1 to {_MOST_SAMPLES} readings in '
+                         f'{wishes.duration:g} s', 'measure less often, or for a shorter time')
+
+
+def _is_noise(deviation: float | None) -> bool:
+    return deviation is None or 0.0 < deviation < math.inf
+
+
+def _check_parameter(scene: Scene, name: str) -> None:
+    if name.startswith('drive.'):
+        raise InputError('--for', name, 'no parameter of the drive', 'its feed is what is proposed')
+    moved_number(scene, name, SHARE_MOVED)
+    if number_at(scene.values, name) == 0.0:
+        raise InputError('--for', name, 'a number other than 0: what is known of it is a share', 'give it with --set')
