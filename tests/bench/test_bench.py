@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.axis import InitialState
-from stickslip_sim.bench.accuracy import Truth, errors_of, pair
+from stickslip_sim.bench.accuracy import Truth, errors_of
 from stickslip_sim.bench.cases import case_names, make_case
 from stickslip_sim.bench.contestants import PEERS
 from stickslip_sim.bench.outside import FIRST_SLIP
@@ -24,6 +24,7 @@ from stickslip_sim.bench.ratios import Ratio, at_least, at_most, ratios
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.figures.distance import pair
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis
 

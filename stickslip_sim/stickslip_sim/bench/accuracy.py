@@ -7,18 +7,14 @@ them; the sub-modes of a slip are compared too, apart.  Events of one kind and d
 the sum of their distances in time is least; a pair further apart than half the usual distance of such events is none.
 """
 
-import statistics
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 from ..core.types import Event, EventKind
+from ..figures.distance import CYCLE_EVENTS, pair, window
 from .problem import Outcome
 
-BOUNDARIES = (EventKind.BREAKAWAY, EventKind.STICK, EventKind.REVERSE)
 SUB_MODES = (EventKind.COAST, EventKind.ACCELERATE, EventKind.DECELERATE)
-
-_Point = tuple[float, float]   # time s, position m
 
 
 class Errors(NamedTuple):
@@ -52,10 +48,10 @@ class _Pairing(NamedTuple):
 
 def errors_of(outcome: Outcome, truth: Truth, duration: float) -> Errors:
     """Compare a run of `duration` seconds with the reference."""
-    boundaries = _compare(outcome, truth, BOUNDARIES, duration)
+    boundaries = _compare(outcome, truth, CYCLE_EVENTS, duration)
     sub_modes = _compare(outcome, truth, SUB_MODES, duration)
     kinds = [int(kind) for kind in outcome.events[:, 1]]
-    return Errors(sum(kind in BOUNDARIES for kind in kinds), sum(e.kind in BOUNDARIES for e in truth.events),
+    return Errors(sum(kind in CYCLE_EVENTS for kind in kinds), sum(e.kind in CYCLE_EVENTS for e in truth.events),
                   boundaries.missed, boundaries.invented, boundaries.time, boundaries.position,
                   abs(outcome.position - truth.position), sub_modes.missed, sub_modes.invented, sub_modes.time)
 
@@ -73,43 +69,3 @@ def _compare(outcome: Outcome, truth: Truth, kinds: Sequence[EventKind], duratio
             time = max([time, *(abs(a[0] - b[0]) for a, b in pairs)])
             position = max([position, *(abs(a[1] - b[1]) for a, b in pairs)])
     return _Pairing(missed, invented, time, position)
-
-
-def window(want: Sequence[_Point], duration: float) -> float:
-    """Return how far apart in time a pair may be, s."""
-    gaps = [b[0] - a[0] for a, b in pairwise(want)]
-    return 0.5 * statistics.median(gaps) if gaps else duration
-
-
-def pair(want: Sequence[_Point], got: Sequence[_Point], apart: float) -> list[tuple[_Point, _Point]]:
-    """Return the pairs of least total distance in time, in order, none further apart than `apart`."""
-    if len(want) == len(got) and all(abs(a[0] - b[0]) <= apart for a, b in zip(want, got)):
-        return list(zip(want, got))
-    # cost of the best pairing of the rest; leaving one out on either side costs half of `apart`
-    alone = 0.5 * apart
-    n = len(got)
-    rows = [[alone * (n - j) for j in range(n + 1)]]
-    for a in reversed(want):
-        below, row = rows[-1], [0.0] * (n + 1)
-        row[n] = below[n] + alone
-        for j in range(n - 1, -1, -1):
-            row[j] = min(below[j] + alone, row[j + 1] + alone, below[j + 1] + abs(a[0] - got[j][0]))
-        rows.append(row)
-    rows.reverse()
-    return _walk(want, got, rows, apart, alone)
-
-
-def _walk(want: Sequence[_Point], got: Sequence[_Point], rows: list[list[float]], apart: float,
-          alone: float) -> list[tuple[_Point, _Point]]:
-    """Follow the cheapest way through the table of costs."""
-    pairs, i, j = [], 0, 0
-    while i < len(want) and j < len(got):
-        distance = abs(want[i][0] - got[j][0])
-        if distance <= apart and rows[i][j] == rows[i + 1][j + 1] + distance:
-            pairs.append((want[i], got[j]))
-            i, j = i + 1, j + 1
-        elif rows[i][j] == rows[i + 1][j] + alone:
-            i += 1
-        else:
-            j += 1
-    return pairs

@@ -8,6 +8,7 @@ from fractions import Fraction
 from ..axis import Axis, InitialState
 from ..core.input_profile import InputProfile
 from ..core.types import Event
+from ..figures.distance import first_mismatch
 from ..reference import simulate
 from ..solvers import Solver
 from .outcome import require
@@ -29,7 +30,7 @@ def error_of_run(axis: Axis, initial: InitialState, drive: InputProfile, force: 
 def error_of_events(events: Sequence[Event], wanted: Sequence[Event], duration: float) -> float:
     """Return the largest error of times over the duration and of positions over the travel; Missed as above."""
     got, want = ([(event.kind.name, event.direction) for event in run] for run in (events, wanted))
-    first = next((i for i, (a, b) in enumerate(zip(got, want)) if a != b), min(len(got), len(want)))
+    first = first_mismatch(events, wanted)
     require(got == want, f'{len(got)} events instead of {len(want)}; number {first} differs: '
                        f'{got[first:first + 2]} instead of {want[first:first + 2]}')
     start = wanted[0].position if wanted else 0.0
