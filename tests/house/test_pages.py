@@ -19,14 +19,14 @@ from benchmarks.page import part_of, quoted, replaced, shown
 from dev.api import LISTS, quality
 from dev.files import ROOT
 from dev.pages import MADE
-from stickslip_sim.bags import mcap_records, schemas, topics
+from stickslip_sim.bags import bag_files, mcap_records, schemas, topics
 from stickslip_sim.check import recorded_steps
 from stickslip_sim.cli.main import stickslip
 from stickslip_sim.core import errors
 from stickslip_sim.core.input_profile import MAX_SINUSOIDS
 from stickslip_sim.friction.kinetic import MAX_BREAKPOINTS
 from stickslip_sim.inputs import csv_table, load_scene
-from stickslip_sim.recording import opening, reader
+from stickslip_sim.recording import reader
 from stickslip_sim.runs import samples, simulated
 from stickslip_sim.scene import parameter, profile_schema, ros_yaml
 from stickslip_sim.simulation.faults import MAX_FAULTS
@@ -107,7 +107,7 @@ class TestLimits:
         ('a text in a scene', (parameter.TEXT_LIMIT,)),
         ('breakpoints of a friction table', (MAX_BREAKPOINTS, MAX_SINUSOIDS, MAX_FAULTS)),
         ('a record of a bag', (mcap_records.RECORD_LIMIT >> 20,)),
-        ('schemas, attachments', (opening.MOST_BESIDE >> 20,)),
+        ('schemas, attachments', (bag_files.MOST_BESIDE >> 20,)),
         ('a definition', (schemas.LONGEST_DEFINITION, schemas.MOST_ELEMENTS)),
         ('a topic of a bag', (reader.MOST_TOPIC_BYTES >> 20,)),
         ('the description of a sweep', (folder.LONGEST_SIDECAR >> 20,)),

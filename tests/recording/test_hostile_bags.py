@@ -16,6 +16,7 @@ import zstandard
 from mcap.opcode import Opcode
 from mcap.writer import CompressionType
 
+from stickslip_sim.bags import mcap_records
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import RecordedMessage, open_bag, write_bag
 from stickslip_sim.recording.playback import Recording
@@ -117,6 +118,23 @@ def test_no_bit_of_the_index_changes_what_is_read(how: Callable[[Path], list[Rec
     assert whole in outcomes
     path.write_bytes(flipped(data, data.rindex(b'/slider_state') + 1))    # no topic is renamed
     assert how(path) == whole
+
+
+@pytest.mark.parametrize('how', [read, played])
+def test_a_short_bag_is_read_as_its_chunks_say(how: Callable[[Path], list[RecordedMessage]], tmp_path: Path) -> None:
+    """All of it is looked at together, and the damaged index behind it does not come first."""
+    path = tmp_path / 'run'
+    write_bag(path, FACTS, samples(20), events(), {})
+    (file,) = path.glob('*.mcap')
+    whole, data = how(path), file.read_bytes()
+    file.write_bytes(flipped(data, data.rindex(b'/slider_state') + 1))
+    assert how(path) == whole
+
+
+def test_no_chunk_is_unpacked_to_open_a_finished_bag(fig8_bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    expected = open_bag(fig8_bag).counts
+    monkeypatch.setattr(mcap_records, '_decompressed', None)
+    assert open_bag(fig8_bag).counts == expected
 
 
 def outcome(how: Callable[[Path], list[RecordedMessage]], path: Path) -> list[RecordedMessage] | str:

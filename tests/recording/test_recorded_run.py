@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from stickslip_sim.bags import mcap_records, topic_columns
+from stickslip_sim.bags import bag_files, mcap_records
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.compare import run_part
 from stickslip_sim.compare.report import write_report
@@ -64,7 +64,7 @@ def test_nothing_is_read_before_it_is_asked_for_and_all_in_one_pass(fig8_bag: Pa
         return mcap_records.contents(file)
 
     run = read_run(fig8_bag)
-    monkeypatch.setattr(topic_columns, 'contents', counted)
+    monkeypatch.setattr(bag_files, 'contents', counted)
     assert not {'states', 'samples', 'events', 'scene', 'receipt', 'summary'} & set(vars(run))
     assert len(run.samples['time']) == len(run.states['time']) == 3001
     assert run.events

@@ -3,6 +3,7 @@
 """A chunk of an MCAP file while it fills, and where its messages stand in it."""
 
 import struct
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import accumulate
 from typing import Any, NamedTuple
@@ -14,7 +15,7 @@ from mcap.opcode import Opcode
 from mcap.records import McapRecord
 from numpy.typing import NDArray
 
-from .message_layout import CHANNEL_AT, FRAME_SIZE, record_of
+from .message_layout import CHANNEL_AT, FRAME_KIND, FRAME_SIZE, frame_at, record_of
 
 _ENTRY = struct.Struct('<QQ')   # of an index: log time, place in the chunk
 
@@ -117,6 +118,21 @@ class Messages(NamedTuple):
     sizes: NDArray[np.int64]
     channels: NDArray[np.int64]
     others: list[tuple[int, int]]
+
+    @property
+    def log_times(self) -> NDArray[np.uint64]:
+        """When they were logged, ns."""
+        return self.rows(np.arange(len(self.starts)), FRAME_KIND)['log_time']
+
+    def on(self, channels: Sequence[int]) -> NDArray[np.intp]:
+        """Return the places of the messages on some channels."""
+        return np.flatnonzero(np.isin(self.channels, channels))
+
+    def each(self, chosen: NDArray[np.intp]) -> Iterator[tuple[int, tuple[int, int, int], bytes]]:
+        """Yield the channel of chosen messages; sequence, log and publish time (ns); and their bytes."""
+        for begin, size in zip(self.starts[chosen].tolist(), self.sizes[chosen].tolist()):
+            frame = frame_at(self.data, begin)
+            yield frame[0], frame[1:], self.data[begin + FRAME_SIZE:begin + size]
 
     def rows(self, chosen: NDArray[Any], kind: np.dtype[Any]) -> NDArray[Any]:
         """Return the records of chosen messages, all of the size of a row, as an array."""

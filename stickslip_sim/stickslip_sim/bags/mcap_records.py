@@ -4,32 +4,28 @@
 
 import os
 import struct
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from dataclasses import replace
-from functools import partial
 from io import BytesIO
 from pathlib import Path
-from typing import BinaryIO, TypeVar
+from typing import BinaryIO
 from zlib import crc32
 
 import lz4.frame
 import zstandard
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.reader import SeekingReader
 from mcap.records import Chunk, DataEnd, McapRecord, Message
 from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
-from mcap.summary import Summary
 from mcap.writer import MCAP0_MAGIC
 
 from ..core.errors import RecordingError
 from .mcap_chunk import Messages, bytes_of, messages_in
 
-_Part = TypeVar('_Part')
 RECORD_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
 COMPRESSIONS = ('', 'zstd', 'lz4')
 _FOOTER = struct.Struct('<QQI')   # where the summary begins, and its part of offsets; checksum of all that but itself
+_DATA_END = struct.Struct('<BQI')   # the whole record: what it is, its length, checksum of all before it
 _CHECKSUM_SIZE = 4
 _BLOCK = 1 << 20
 GATHERED_BYTES = 1 << 19   # bytes of chunks that are looked at together
@@ -39,23 +35,13 @@ CUT_OFF = (McapError, CRCValidationError, struct.error, zstandard.ZstdError, Run
             OverflowError)
 
 
-def records(path: Path) -> Iterator[McapRecord]:
-    """Yield the records that are whole, also those in chunks; a file that is cut off just ends earlier.
-
-    Raises RecordingError when it is no MCAP file, cannot be read, or was finished and is damaged.
-    """
-    return _understood(path, partial(_unpacked, path))
-
-
 def contents(path: Path) -> Iterator[McapRecord | Messages]:
-    """Yield what `records` does, but the messages of some chunks at once, behind their other records."""
+    """Yield the records that are whole, and the messages of some chunks at once, behind their other records.
+
+    A file that is cut off just ends earlier.  Raises RecordingError when it is no MCAP file, cannot be read, or was
+    finished and is damaged.
+    """
     gathered = _GatheredChunks(path)
-    return _understood(path, gathered.take, gathered.rest)
-
-
-def _understood(path: Path, understand: Callable[[McapRecord], Iterable[_Part]],
-                rest: Callable[[], Iterable[_Part]] = tuple) -> Iterator[_Part]:
-    """Yield what is made of one record after the other, as far as the file goes, and at its end the rest."""
     try:
         with path.open('rb') as file:
             begin = True
@@ -63,8 +49,8 @@ def _understood(path: Path, understand: Callable[[McapRecord], Iterable[_Part]],
                 for record in _Records(_Careful(file), validate_crcs=True,  # type: ignore[arg-type]
                                        emit_chunks=True).records:
                     begin = False
-                    yield from understand(record)
-                yield from rest()
+                    yield from gathered.take(record)
+                yield from gathered.rest()
             except CUT_OFF:
                 if begin:
                     raise RecordingError(f'{path} is not an MCAP file: it is empty, or begins as none does') from None
@@ -72,25 +58,58 @@ def _understood(path: Path, understand: Callable[[McapRecord], Iterable[_Part]],
                     raise RecordingError(f'{path}: damaged: it was finished, but is no longer what was written; fetch '
                                          'the file again') from None
                 with suppress(*CUT_OFF):
-                    yield from rest()
+                    yield from gathered.rest()
     except OSError as error:
         raise RecordingError(f'{path}: {error.strerror}') from None
 
 
-def summary_of(file: BinaryIO) -> Summary | None:
-    """Return what stands at the end of a file; None when nothing to be trusted does, as in one that was cut off."""
-    try:
-        summary = SeekingReader(_Careful(file)).get_summary()  # type: ignore[arg-type]
-        return summary if summary and _matches_checksum(file) else None
-    except (*CUT_OFF, OSError, StopIteration):    # OSError: the file is shorter than such an end
-        return None
+def summary_of(file: BinaryIO, whose_bytes_are_checked: bool) -> Iterator[McapRecord]:
+    """Yield the records at the end of a file; none where they are not to be trusted, as in one that was cut off.
+
+    With `whose_bytes_are_checked` they are trusted only where the file has checksums of all its bytes, which are right.
+    Raises one of CUT_OFF, or OSError where it is shorter than such an end.
+    """
+    end = file.seek(0, os.SEEK_END) - len(MCAP0_MAGIC) - _FOOTER.size
+    if end < 0 or not _is_finished(file):
+        return
+    file.seek(end)
+    begin, _, written = _FOOTER.unpack(file.read(_FOOTER.size))
+    is_right = written == _checksum(file, begin, end + _FOOTER.size - _CHECKSUM_SIZE)
+    if begin and (is_right and _data_are_whole(file, begin) if whose_bytes_are_checked else is_right or not written):
+        yield from _records_from(file, begin)
 
 
-def chunk_at(path: Path, file: BinaryIO, offset: int) -> Iterable[McapRecord]:
-    """Return the records of the chunk at a place in an open file; raises one of CUT_OFF or RecordingError."""
+def _data_are_whole(file: BinaryIO, end: int) -> bool:
+    """Return whether all before a place, where the summary begins, is what was written; false without a checksum."""
+    at = end - _DATA_END.size
+    file.seek(max(at, 0))
+    opcode, length, written = _DATA_END.unpack(file.read(_DATA_END.size))
+    return (opcode, length) == (Opcode.DATA_END, _CHECKSUM_SIZE) and 0 != written == _checksum(file, 0, at)
+
+
+def _checksum(file: BinaryIO, begin: int, end: int) -> int:
+    checksum = 0
+    for at in range(file.seek(begin), end, _BLOCK):
+        checksum = crc32(file.read(min(_BLOCK, end - at)), checksum)
+    return checksum
+
+
+def record_at(file: BinaryIO, offset: int) -> McapRecord:
+    """Return the record at a place; raises one of CUT_OFF."""
+    return next(_records_from(file, offset))
+
+
+def _records_from(file: BinaryIO, offset: int) -> Iterator[McapRecord]:
     file.seek(offset)
-    chunk = next(StreamReader(_Careful(file), skip_magic=True, emit_chunks=True).records)  # type: ignore[arg-type]
-    return _unpacked(path, chunk)
+    return StreamReader(_Careful(file), skip_magic=True, emit_chunks=True).records  # type: ignore[arg-type]
+
+
+def messages_at(path: Path, file: BinaryIO, offset: int) -> Messages:
+    """Return the messages of the chunk at a place; raises one of CUT_OFF or RecordingError."""
+    chunk = record_at(file, offset)
+    if not isinstance(chunk, Chunk):
+        raise McapError('no chunk')
+    return messages_in(_content(path, chunk))
 
 
 class _Records(StreamReader):
@@ -114,32 +133,11 @@ class _Careful:
             raise McapError(f'a part of {size} bytes')
         return self._file.read(size)
 
-    def seek(self, offset: int, whence: int = os.SEEK_SET) -> int:
-        return self._file.seek(offset, whence)
-
 
 def _is_finished(file: BinaryIO) -> bool:
     """Return whether a file has its last bytes, which are written when all others are."""
     file.seek(-len(MCAP0_MAGIC), os.SEEK_END)
     return file.read() == MCAP0_MAGIC
-
-
-def _matches_checksum(file: BinaryIO) -> bool:
-    """Return whether the end of a file, from its summary on, is what was written; true without a checksum."""
-    file.seek(-len(MCAP0_MAGIC) - _FOOTER.size, os.SEEK_END)
-    begin, _, written = _FOOTER.unpack(file.read(_FOOTER.size))
-    end = file.tell() - _CHECKSUM_SIZE
-    checksum = 0
-    for at in range(file.seek(begin), end, _BLOCK):
-        checksum = crc32(file.read(min(_BLOCK, end - at)), checksum)
-    return written in (0, checksum)
-
-
-def _unpacked(path: Path, record: McapRecord) -> Iterable[McapRecord]:
-    """Return the records of a chunk, or any other record by itself."""
-    if not isinstance(record, Chunk):
-        return [record]
-    return breakup_chunk(replace(record, compression='', data=_content(path, record)), validate_crc=True)
 
 
 class _GatheredChunks:
@@ -153,13 +151,11 @@ class _GatheredChunks:
     def take(self, record: McapRecord) -> Iterator[McapRecord | Messages]:
         """Take a record; yield those that are no messages, and the messages that were held when they are enough."""
         if not isinstance(record, (Chunk, Message)):
-            if isinstance(record, DataEnd):    # the index behind it repeats what the chunks say
+            if isinstance(record, DataEnd):    # the summary repeats what chunks say: they come first
                 yield from self.rest()
             yield record
             return
         data = bytes_of(record) if isinstance(record, Message) else _content(self._path, record)
-        if isinstance(record, Chunk) and record.uncompressed_crc and (found := crc32(data)) != record.uncompressed_crc:
-            raise CRCValidationError(record.uncompressed_crc, found, record)
         self._held.append(data)
         self._size += len(data)
         if self._size >= GATHERED_BYTES:
@@ -195,6 +191,8 @@ def _content(path: Path, record: Chunk) -> bytes:
     data = _decompressed(record)
     if len(data) != record.uncompressed_size:
         raise McapError('a chunk of another size than it says')
+    if record.uncompressed_crc and (found := crc32(data)) != record.uncompressed_crc:
+        raise CRCValidationError(record.uncompressed_crc, found, record)
     return data
 
 

@@ -96,7 +96,15 @@ SEQUENCE_MASK = 0xFFFFFFFF      # the file has 32 bits for it; the message itsel
 _FRAME = struct.Struct('<BQHIQQ')
 FRAME_SIZE = _FRAME.size
 CHANNEL_AT = FIELDS['channel'][1]
+FRAME_KIND = np.dtype({'names': list(FIELDS), 'formats': [kind for kind, _ in FIELDS.values()],
+                       'offsets': [place for _, place in FIELDS.values()], 'itemsize': FRAME_SIZE})
 _OPCODE = int(Opcode.MESSAGE)
+
+
+def frame_at(data: bytes, place: int) -> tuple[int, int, int, int]:
+    """Return channel, sequence, log and publish time (ns) of the message whose record begins at a place."""
+    _, _, channel, sequence, log_time, publish_time = _FRAME.unpack_from(data, place)
+    return channel, sequence, log_time, publish_time
 
 
 def record_of(channel: int, sequence: int, log_time: int, publish_time: int, data: bytes) -> bytes:

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.base import TypesysError
-from rosbags.typesys.store import Typestore
+from rosbags.typesys.store import Typestore as Typestore
 
 from ..core.errors import RecordingError
 from .message_layout import Layout, number_fields

@@ -3,36 +3,21 @@
 """A topic of a bag as columns, block by block: the numbers of all its messages in a chunk at once."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import reduce
-from operator import or_
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from mcap.records import Channel
 from numpy.typing import NDArray
-from rosbags.typesys.store import Typestore
 
+from .bag_files import RecordedFile, RecordedMessage
 from .mcap_chunk import Messages
-from .mcap_records import contents
-from .message_layout import FIELDS, FRAME_SIZE, layout_of, number_fields, row_kind, text_fields
+from .message_layout import FRAME_SIZE, layout_of, number_fields, row_kind, text_fields
+from .schemas import Typestore
 
 Block = dict[str, NDArray[Any]]
 
 _TIMES = 'log_time', 'publish_time', 'sequence'
 _SWAPPED = 'publish_time', 'log_time', 'sequence'
 _LATEST = 2 ** 63 - 1   # ns: the year 2262
-
-
-class RecordedMessage(NamedTuple):
-    """One message as it stands in the file; times in ns."""
-
-    topic: str
-    type: str
-    sequence: int
-    log_time: int
-    publish_time: int
-    data: bytes  # CDR
 
 
 class TopicColumns:
@@ -45,6 +30,7 @@ class TopicColumns:
     def __init__(self, topic: str, type_name: str, store: Typestore, decode: Callable[[RecordedMessage], Any],
                  is_by_wall_clock: bool) -> None:
         self.topic, self._type, self._decode = topic, type_name, decode
+        self._is_by_wall_clock = is_by_wall_clock
         self._places = dict(zip(_TIMES, _SWAPPED if is_by_wall_clock else _TIMES))
         self._layout = layout_of(store, type_name)
         self._kinds = {**number_fields(store, type_name), **dict.fromkeys(text_fields(store, type_name), 'object')}
@@ -59,7 +45,8 @@ class TopicColumns:
         """Return the columns of chosen messages; raises OverflowError on times beyond 64 bits."""
         layout = self._layout
         if layout is None or (messages.sizes[chosen] != FRAME_SIZE + layout.size).any():
-            return self._decoded([self._message(messages, int(k)) for k in chosen])
+            return self._decoded([RecordedMessage(self.topic, self._type, *facts, data).at(self._is_by_wall_clock)
+                                  for _, facts, data in messages.each(chosen)])
         rows = messages.rows(chosen, row_kind(layout))
         for name in _TIMES:
             if rows[name].max() > _LATEST:
@@ -73,29 +60,13 @@ class TopicColumns:
                 else np.array([getattr(message, name) for message in decoded], dtype=self._kinds[name])
                 for name in self.fields}
 
-    def _message(self, messages: Messages, k: int) -> RecordedMessage:
-        begin, size = int(messages.starts[k]), int(messages.sizes[k])
-        frame = np.frombuffer(messages.data, _FRAME, 1, begin)[0]
-        log_time, publish_time, sequence = (int(frame[self._places[name]]) for name in _TIMES)
-        return RecordedMessage(self.topic, self._type, sequence, log_time, publish_time,
-                               messages.data[begin + FRAME_SIZE:begin + size])
 
-
-def column_blocks(files: Iterable[Path], topics: Sequence[TopicColumns]) -> Iterator[tuple[TopicColumns, Block]]:
+def column_blocks(files: Iterable[RecordedFile], topics: Sequence[TopicColumns]
+                  ) -> Iterator[tuple[TopicColumns, Block]]:
     """Yield the columns of topics block by block as they stand in files, in one pass; raises OverflowError."""
     for file in files:
-        channels: list[list[int]] = [[] for _ in topics]
-        for record in contents(file):
-            if isinstance(record, Channel):
-                for topic, known in zip(topics, channels):
-                    if record.topic == topic.topic:
-                        known.append(record.id)
-            elif isinstance(record, Messages):
-                for topic, known in zip(topics, channels):
-                    chosen = np.flatnonzero(reduce(or_, (record.channels == one for one in known), False))
-                    if len(chosen):
-                        yield topic, topic.block(record, chosen)
-
-
-_FRAME = np.dtype({'names': list(FIELDS), 'formats': [kind for kind, _ in FIELDS.values()],
-                   'offsets': [place for _, place in FIELDS.values()], 'itemsize': FRAME_SIZE})
+        channels = [file.numbers_of([topic.topic]) for topic in topics]
+        for messages in file.blocks():
+            for topic, known in zip(topics, channels):
+                if len(chosen := messages.on(known)):
+                    yield topic, topic.block(messages, chosen)

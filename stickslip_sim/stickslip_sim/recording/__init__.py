@@ -3,13 +3,13 @@
 """Runs on disk: written by the node and the tool, read back whole or cut off.  The file format is in `bags`."""
 
 from ..bags.bag import BagWriter, Split
+from ..bags.bag_files import RecordedMessage
 from ..bags.schemas import MessageCodec, Schema, flat_layout, schema
-from ..bags.topic_columns import RecordedMessage
 from ..bags.topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded_topics
 from .measured_run import MeasuredRun, write_measured
 from .offline_bag import OfflineBag, samples_of, write_bag
-from .opening import open_bag, read_run
-from .reader import Bag
+from .opening import read_run
+from .reader import Bag, open_bag
 from .recorded_run import RecordedRun
 from .recordings import RecorderThread
 from .run import RunFacts, checkpoint_file, open_run, receipt_file

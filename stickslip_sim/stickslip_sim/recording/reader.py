@@ -5,54 +5,86 @@
 import json
 import math
 import os
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mcap.records import Channel, Message
 from numpy.typing import NDArray
-from rosbags.typesys.store import Typestore
 
-from ..bags.bag import METADATA, is_by_wall_clock
+from ..bags.bag import METADATA, NEXT_FILE, is_by_wall_clock
+from ..bags.bag_files import RecordedFile, RecordedMessage, files_of, goes_on_empty
 from ..bags.mcap_chunk import Messages
-from ..bags.mcap_records import contents, records
 from ..bags.message_layout import Layout, layout_of
-from ..bags.schemas import store_of, understood
-from ..bags.topic_columns import Block, RecordedMessage, TopicColumns, column_blocks
+from ..bags.schemas import Typestore, store_of, understood
+from ..bags.topic_columns import Block, TopicColumns, column_blocks
 from ..bags.topics import MODE_EVENT, Topic
-from ..core.errors import InputError, RecordingError, one_line
+from ..core.errors import InputError, RecordingError, RecordingWarning, one_line
 from ..core.types import Event, EventKind, Mode
 from ..scene import Scene, parse_scene
 from .run import RECEIPT_FILE, SCENE_FILE
 
 MOST_TOPIC_BYTES = 4 << 30    # bytes of a topic in memory at once
-OVERHEAD = 300         # bytes of a message there beside its own
 
 EVENT_FIELDS = ('time', 'kind', 'mode', 'direction', 'position', 'velocity', 'drive_force', 'friction_force',
                 'static_coefficient', 'rest_time')
 
 
-@dataclass
-class Bag:
-    """A bag of one or more files; messages are read from there each time, in the order in which they were written."""
+def open_bag(path: Path | str) -> 'Bag':
+    """Return the bag in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
 
-    path: Path                  # for people: its file, or the folder of several
-    files: list[Path]
-    is_complete: bool = False
-    next_file: str = ''         # in which it goes on, where that was not given
-    attachments: dict[str, bytes] = field(default_factory=dict)
-    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
-    schemas: dict[str, str] = field(default_factory=dict)   # definitions by type name
-    topics: dict[str, str] = field(default_factory=dict)    # type names by topic
-    channel_metadata: dict[str, dict[str, str]] = field(default_factory=dict)
-    counts: dict[str, int] = field(default_factory=dict)
-    channels: set[tuple[int, str]] = field(default_factory=set)   # number and topic
-    _stores: dict[str, Typestore] = field(default_factory=dict, init=False, repr=False, compare=False)
+    One without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
+    goes, with a RecordingWarning.
+    """
+    bag = Bag(path)
+    for shortfall in bag.shortfalls:
+        warnings.warn(shortfall, RecordingWarning, stacklevel=2)
+    return bag
+
+
+class Bag:
+    """A bag of one or more files; messages are read from there each time, in the order in which they were written.
+
+    `path` is for people: its file, or the folder of several.  `next_file` is where it goes on, if that was not given.
+    By topic: `topics` (type names), `channel_metadata`, `counts`; `channels` are numbers with their topics, `schemas`
+    definitions by type name.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        self.files = files_of(Path(path))
+        self.path = self.files[0] if len(self.files) == 1 else Path(path)
+        self._parts = [RecordedFile(file, whose_bytes_are_checked=True) for file in self.files]
+        next_file = self._parts[-1].next_file
+        self.is_complete = all(part.is_complete for part in self._parts) and not next_file
+        self.next_file = '' if goes_on_empty(self.files[-1]) or not self._parts[-1].is_complete else next_file
+        self.attachments: dict[str, bytes] = {}
+        self.metadata: dict[str, dict[str, str]] = {}
+        self.schemas: dict[str, str] = {}
+        self.topics: dict[str, str] = {}
+        self.channel_metadata: dict[str, dict[str, str]] = {}
+        self.counts: dict[str, int] = {}
+        self.channels: set[tuple[int, str]] = set()
+        for part in self._parts:
+            self._take(part)
+        self._stores: dict[str, Typestore] = {}
+
+    def _take(self, part: RecordedFile) -> None:
+        self.attachments |= part.attachments
+        for record in part.metadata:
+            if record.name != NEXT_FILE and not (record.name == METADATA and METADATA in self.metadata):
+                self.metadata[record.name] = record.metadata
+        for schema in part.schemas.values():
+            if schema.encoding == 'ros2msg':
+                self.schemas[schema.name] = schema.data.decode(errors='replace')
+        for number, channel in part.channels.items():
+            self.channels.add((number, channel.topic))
+            self.topics[channel.topic] = part.type_of(channel)
+            self.channel_metadata[channel.topic] = channel.metadata
+            self.counts[channel.topic] = self.counts.get(channel.topic, 0) + part.counts[number]
 
     @property
     def continuation(self) -> str:
@@ -114,19 +146,11 @@ class Bag:
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
         """Yield the messages of some topics (None: all), with simulation time as their log time."""
         wanted = set(self.topics if topics is None else topics)
-        for file in self.files:
-            channels: dict[int, str] = {}
-            for record in records(file):
-                if isinstance(record, Channel):
-                    channels.setdefault(record.id, record.topic)
-                elif isinstance(record, Message) and (topic := channels[record.channel_id]) in wanted:
-                    times = record.log_time, record.publish_time
-                    yield RecordedMessage(topic, self.topics[topic], record.sequence,
-                                          *(times[::-1] if self._is_by_wall_clock else times), record.data)
+        return (message.at(self._is_by_wall_clock) for part in self._parts for message in part.written(wanted))
 
     def blocks(self) -> Iterator[Messages]:
         """Yield all messages as they stand in the chunks of the files."""
-        return (record for file in self.files for record in contents(file) if isinstance(record, Messages))
+        return (block for part in self._parts for block in part.blocks())
 
     def decode(self, message: RecordedMessage) -> Any:
         """Return the message as an object with its fields as attributes; raises RecordingError when it is damaged."""
@@ -218,7 +242,7 @@ class Bag:
             topics.append(topic)
             yield name, topic.empty
         with self._named(', '.join(wanted)), understood('a time beyond the year 2262', OverflowError):
-            yield from ((topic.topic, block) for topic, block in column_blocks(self.files, topics))
+            yield from ((topic.topic, block) for topic, block in column_blocks(self._parts, topics))
 
     def _held(self, wanted: Mapping[str, Sequence[str] | None]) -> dict[str, Block]:
         """Return fields of topics (None: all), each as one array; raises RecordingError on more than fits."""

@@ -10,9 +10,10 @@ from typing import Any
 from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
 
+from ...bags.bag_files import RecordedTopic
 from ...core.errors import InputError
 from ...recording import QosProfile, schema
-from ...recording.playback import RecordedTopic, Recording
+from ...recording.playback import Recording
 from ..environment import refusing
 from ..node.endpoints import qos
 from .player import Act, nothing
