@@ -3,40 +3,37 @@
 """What a shell completes: verbs and options by click, and here scenes, runs and parameters."""
 
 import os
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
+from importlib import import_module
+from typing import Any
 
 import click
 from click.shell_completion import CompletionItem, shell_complete
 
-if TYPE_CHECKING:
-    pass
-
-
 _VARIABLE = '_STICKSLIP_COMPLETE'
 
 
-def complete_for_shell(command: 'click.Command') -> int | None:
+def complete_for_shell(command: click.Command) -> int | None:
     """Answer a shell that asks what to complete, or how; return the exit code, None where none asks."""
     asked = os.environ.get(_VARIABLE)
     return shell_complete(command, {}, 'stickslip', _VARIABLE, asked) if asked else None
 
 
-def complete_scenes(context: 'click.Context', parameter: 'click.Parameter', begin: str) -> list[CompletionItem]:
+def complete_scenes(context: click.Context, parameter: click.Parameter, begin: str) -> list[CompletionItem]:
     """Return the shipped scenes; files where none begins so."""
     from ..scene import scene_names
 
     return _those(scene_names(), begin) or [CompletionItem(begin, type='file')]
 
 
-def complete_parameters(context: 'click.Context', parameter: 'click.Parameter', begin: str) -> list[CompletionItem]:
+def complete_parameters(context: click.Context, parameter: click.Parameter, begin: str) -> list[CompletionItem]:
     """Return the parameters of a scene."""
     from ..scene.schema import BY_NAME
 
     return _those(BY_NAME, begin)
 
 
-def complete_folders(context: 'click.Context', parameter: 'click.Parameter', begin: str) -> list[CompletionItem]:
+def complete_folders(context: click.Context, parameter: click.Parameter, begin: str) -> list[CompletionItem]:
     """Return folders."""
     return [CompletionItem(begin, type='dir')]
 
@@ -47,28 +44,41 @@ def _those(words: Iterable[str], begin: str) -> list[CompletionItem]:
 
 # Verbs by sections: `stickslip --help` lists them by what a reader wants to do.
 
-class SectionedGroup(click.Group):
-    """A group of commands that are added, and listed, section by section."""
+class LazyGroup(click.Group):
+    """A group whose commands are imported when they are asked for: by section and name, `FILE.FUNCTION` beside this."""
 
-    def __init__(self, *arguments: object, **options: object) -> None:
-        super().__init__(*arguments, **options)  # type: ignore[arg-type]
-        self.sections: dict[str, list[click.Command]] = {}
+    def __init__(self, *arguments: Any, sections: Mapping[str, Mapping[str, str]], **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self._sections = sections
+        self._places = {name: place for verbs in sections.values() for name, place in verbs.items()}
 
-    def add_section(self, title: str, commands: Sequence[click.Command]) -> None:
-        """Add commands below a title, in the order of the list."""
-        self.sections[title] = list(commands)
-        for command in commands:
-            self.add_command(command)
+    @property
+    def sections(self) -> dict[str, list[click.Command]]:
+        """The commands by section, in the order of the help; imports all of them."""
+        return {title: [self._imported(name) for name in verbs] for title, verbs in self._sections.items()}
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names of all verbs."""
+        return sorted(self._places)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Return a verb; None when there is none of that name."""
+        return self._imported(cmd_name) if cmd_name in self._places else None
+
+    def _imported(self, name: str) -> click.Command:
+        file, _, function = self._places[name].partition('.')
+        command: click.Command = getattr(import_module(f'.{file}', __package__), function)
+        return command
 
     def resolve_command(self, ctx: click.Context, args: list[str]
                         ) -> tuple[str | None, click.Command | None, list[str]]:
         """Return the verb that is first among the arguments; raises UsageError, with what may have been meant."""
         word = args[0]
         if self.get_command(ctx, word) is None and not word.startswith('-'):
-            raise click.UsageError(f'No such command {word!r}: {self.meant_by(word)}', ctx)
+            raise click.UsageError(f'No such command {word!r}: {self._meant_by(word)}', ctx)
         return super().resolve_command(ctx, args)
 
-    def meant_by(self, word: str) -> str:
+    def _meant_by(self, word: str) -> str:
         """Return what to do in place of a verb that is none: a scene or a path was given in its place, or a typo."""
         from ..core.errors import suggestion
         from ..scene import scene_names
@@ -77,11 +87,11 @@ class SectionedGroup(click.Group):
             return f'it is a scene; give a verb first, as in stickslip simulate {word} --duration 10.'
         if os.path.exists(word):
             return f'it is a path; give a verb first, as in stickslip plot {word}.'
-        return suggestion(word, self.commands, 'the verbs are ' + ', '.join(sorted(self.commands)) + '.')
+        return suggestion(word, self._places, 'the verbs are ' + ', '.join(sorted(self._places)) + '.')
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the sections, their columns below each other."""
-        width = max(map(len, self.commands))
+        width = max(map(len, self._places))
         for title, commands in self.sections.items():
             with formatter.section(title):
                 formatter.write_dl([(f'{command.name:{width}}', command.get_short_help_str(limit=100))

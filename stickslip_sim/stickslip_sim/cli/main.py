@@ -17,39 +17,23 @@ import click
 from ..core.errors import StickslipError, internal_error
 from ..core.version import __version__
 from . import process
-from .advise import advise
-from .bench import bench
-from .call import call
-from .check import check
-from .compare import compare
-from .completion import SectionedGroup, complete_for_shell
-from .critical import critical
-from .design import design
-from .export import export
-from .extremes import extremes
-from .friction import friction
-from .identify import identify
-from .import_ import import_
-from .map import map_
-from .plot import plot
-from .scenes import scenes
-from .simulate import simulate
-from .sweep import sweep
-from .uncertainty import uncertainty
-from .verify import verify
+from .completion import LazyGroup, complete_for_shell
 
-_SECTIONS: dict[str, tuple[click.Command, ...]] = {   # each verb by what a reader wants, as in the help
-    'Run': (scenes, simulate, import_, call),
-    'Look': (plot, compare, export),
-    'Check': (check, verify),
-    'Study': (critical, sweep, map_, uncertainty),
-    'Identify': (friction, identify, design),
-    'Measure the engine': (advise, bench, extremes),
+_SECTIONS = {   # each verb by what a reader wants, as in the help: its function, by its file
+    'Run': {'scenes': 'scenes.scenes', 'simulate': 'simulate.simulate', 'import': 'import_.import_',
+            'call': 'call.call'},
+    'Look': {'plot': 'plot.plot', 'compare': 'compare.compare', 'export': 'export.export'},
+    'Check': {'check': 'check.check', 'verify': 'verify.verify'},
+    'Study': {'critical': 'critical.critical', 'sweep': 'sweep.sweep', 'map': 'map.map_',
+              'uncertainty': 'uncertainty.uncertainty'},
+    'Identify': {'friction': 'friction.friction', 'identify': 'identify.identify', 'design': 'design.design'},
+    'Measure the engine': {'advise': 'advise.advise', 'bench': 'bench.bench', 'extremes': 'extremes.extremes'},
 }
 _INTERRUPTED = 130
 
 
-@click.group(cls=SectionedGroup, context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100},
+@click.group(cls=LazyGroup, sections=_SECTIONS,
+             context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100},
              epilog='For a start: stickslip simulate paper_fig8 --duration 10 --plot run.png',
              invoke_without_command=True, subcommand_metavar='COMMAND [ARGS]...')
 @click.version_option(__version__, message='stickslip %(version)s')
@@ -59,10 +43,6 @@ def stickslip(context: click.Context) -> None:
     if context.invoked_subcommand is None:   # the behaviour of click depends on its version
         click.echo(context.get_help(), err=True)
         context.exit(2)
-
-
-for title, verbs in _SECTIONS.items():
-    stickslip.add_section(title, verbs)
 
 
 def main(arguments: Sequence[str] | None = None) -> NoReturn:
