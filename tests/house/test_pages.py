@@ -13,6 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+from click import Context
 
 from benchmarks import identification, maps
 from benchmarks.page import part_of, quoted, replaced, shown
@@ -268,4 +269,4 @@ def test_the_diagram_of_the_node_names_what_there_is() -> None:
     assert services <= {*re.findall(r'`(~/\w+)`', LISTS['services']())}
     verbs = {word for text, size in texts if size == '12' for word in text.split()} - {'--bag'}
     assert verbs >= {'simulate', 'uncertainty', 'export'}
-    assert verbs <= {*stickslip.commands}
+    assert verbs <= {*stickslip.list_commands(Context(stickslip))}

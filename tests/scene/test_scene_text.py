@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import changed, scene_from_values, scene_names
-from stickslip_sim.scene.load import parameters_of, parse_scene, scene_of_parameters, values_in_file
+from stickslip_sim.scene.load import parse_scene, values_in_file, values_of
 from stickslip_sim.scene.plausible import PLAUSIBLE, check_plausible
 from stickslip_sim.scene.ros_yaml import plain_value, read_yaml
 from stickslip_sim.scene.schema import BY_NAME, PARAMETERS
-from stickslip_sim.scene.values import scene_text, yaml_value
+from stickslip_sim.scene.values import scene_text, stated, yaml_value
 from tests.support.scene_files import refusal
 from tests.support.tool import Capture, answered, refused
 
@@ -56,7 +56,7 @@ def overrides(draw: st.DrawFn) -> dict[str, object]:
 @given(overrides(), st.sampled_from(['paper_fig7', 'paper_fig8', 'cutting_force']))
 def test_the_text_of_a_scene_loads_as_the_same_scene(changes: dict[str, object], name: str) -> None:
     scene = load_scene(name, changes)
-    again = scene_from_values(parameters_of(read_yaml(scene.text)))
+    again = scene_from_values(values_of(read_yaml(scene.text)))
     assert again == scene
     assert again.text == scene.text
 
@@ -67,7 +67,7 @@ def test_what_param_dump_writes_is_the_same_scene(name: str) -> None:
     scene = load_scene(name)
     values = {entry.name: scene.values.get(entry.name, 'null') for entry in PARAMETERS}
     assert 'null' in values.values()
-    again = scene_of_parameters(values)
+    again = scene_from_values(stated(values))
     assert again == replace(scene, summary=again.summary)
 
 

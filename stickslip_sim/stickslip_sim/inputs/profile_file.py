@@ -19,7 +19,6 @@ from ..core.time_grid import decimal, multiples
 from ..scene.model import ProfileSource
 from ..scene.profile_schema import FILE_SETTINGS, MOST_POINTS
 from ..scene.schema import BY_NAME
-from ..scene.values import stated
 from .csv_table import FORCES, LENGTHS, SPEEDS, TIMES, CsvTable, Wanted, wanted_column
 
 Given = Mapping[str, object]
@@ -57,7 +56,7 @@ def sections_with_file(values: Given) -> list[str]:
 
 def prepared(base: Given, changes: Given) -> tuple[dict[str, object], dict[str, object]]:
     """Return the values of a scene and changes to them, such that a file replaces points, and points replace a file."""
-    base, changes = stated(base), stated(changes)
+    base, changes = dict(base), dict(changes)
     for section, forms in _FORMS.items():
         form = f'{section}.course'
         numbers = {f'{section}.{name}' for name in _NUMBERS[section]}

@@ -11,8 +11,7 @@ from pathlib import Path
 from .. import runs
 from ..core.errors import InputError
 from ..core.types import Progress
-from ..scene import Scene
-from ..scene.build import build_scene
+from ..scene import Scene, scene_from_values
 from ..scene.load import named, named_scene, of_a_scene, read_scene
 from ..scene.profile_schema import PROFILES
 from ..scene.schema import NULL
@@ -50,19 +49,16 @@ def scene_with_profiles(values: Mapping[str, object], overrides: Mapping[str, ob
 
     Raises InputError and RecordingError.
     """
-    values, overrides = of_a_scene(values), stated(overrides)
+    values, changes = of_a_scene(values), stated(overrides)
     if not values:
         raise InputError('parameters', None, 'of a scene', 'see the shipped scenes')
-    base = named_scene(values, overrides.get('scene'))
-    kept = {name: value for name, value in base.items() if values.get(name) != NULL}
-    merged = _changed(_changed(kept, values), overrides)
-    places = {**folders, **dict.fromkeys(sections_with_file(overrides), Path())}
-    read, sources = with_profiles(merged, places)
-    return replace(build_scene(read, summary), sources=sources)
-
-
-def _changed(base: Mapping[str, object], changes: Mapping[str, object]) -> dict[str, object]:
-    return overridden(*prepared(base, changes))
+    shipped = {name: value for name, value in named_scene(values, changes.get('scene')).items()
+               if values.get(name) != NULL}
+    values = overridden(*prepared(shipped, stated(values)))
+    values = overridden(*prepared(values, changes))
+    places = {**folders, **dict.fromkeys(sections_with_file(changes), Path())}
+    values, sources = with_profiles(values, places)
+    return replace(scene_from_values(values, summary), sources=sources)
 
 
 # Runs of a scene, or of the one of a name or path.

@@ -187,9 +187,9 @@ class GivenParameters(NamedTuple):
         """
         fitting = [(section, file.path) for file in self.files for section in file.sections if section.fits(node)]
         fitting.sort(key=lambda found: found[0].specificity)
-        in_files = {name: value for section, _ in fitting for name, value in section.parameters}
-        folders = {name: Path(path).parent for section, path in fitting for name, _ in section.parameters}
-        single = {name: value for section in self.single if section.fits(node) for name, value in section.parameters}
+        in_files = {name: value for section, _ in fitting for name, value in section.values}
+        folders = {name: Path(path).parent for section, path in fitting for name, _ in section.values}
+        single = {name: value for section in self.single if section.fits(node) for name, value in section.values}
         paths = dict.fromkeys(path for _, path in fitting)
         return NodeParameters(in_files, single, folders, ' + '.join(paths),
                               [file.path for file in self.files if file.path not in paths])

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""From effective values to a scene: each section becomes an object of a room below, which checks it."""
+"""From values to a scene: each section becomes an object of a room below, which checks it."""
 
 import hashlib
 import math
@@ -28,7 +28,7 @@ from .model import CommandSettings, RecordSettings, Scene, SolverSettings, Timin
 from .profile_schema import FILE_SETTINGS, PROFILES
 from .rig_settings import rig_settings, time_settings
 from .schema import JOINT_PREFIX
-from .values import effective_values, scene_text, section_of
+from .values import complete_values, scene_text, section_of
 
 _BREAKPOINTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table': table}
 
@@ -43,10 +43,13 @@ class Dynamics(NamedTuple):
     load: InputProfile | None
 
 
-def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
-    """Return the scene of the values given by dotted name; raises InputError."""
-    _check_read(given)
-    values: dict[str, Any] = effective_values(given)
+def scene_from_values(values: Mapping[str, Any], summary: str = '') -> Scene:
+    """Return the scene of values by dotted name, as a file with these would; None counts as not given.
+
+    Raises InputError.
+    """
+    _check_read(values)
+    values = complete_values(values)
     axis, initial, drive, force, load = dynamics_of(values)
     if 'solver.method' not in values and (method := method_of(values)):
         values['solver.method'] = method
@@ -84,7 +87,7 @@ def build_scene(given: Mapping[str, object], summary: str = '') -> Scene:
 
 
 def dynamics_of(values: Mapping[str, Any]) -> Dynamics:
-    """Return what decides the motion, from effective values; raises InputError where they contradict each other."""
+    """Return what decides the motion, from complete values; raises InputError where they contradict each other."""
     axis = _axis(values)
     initial = InitialState(**section_of(values, 'initial'))
     load = _profile(values, 'normal_load', 'constant', 'rate', 'forces') if 'normal_load.course' in values else None
@@ -95,11 +98,11 @@ def dynamics_of(values: Mapping[str, Any]) -> Dynamics:
                     _profile(values, 'force', 'constant', 'rate', 'forces'), load)
 
 
-def _check_read(given: Mapping[str, object]) -> None:
+def _check_read(values: Mapping[str, object]) -> None:
     """Raise InputError on a profile in a file: who loads a scene has put its points in place of it."""
     for section in PROFILES:
         for name in FILE_SETTINGS:
-            if (value := given.get(f'{section}.{name}')) is not None:
+            if (value := values.get(f'{section}.{name}')) is not None:
                 raise InputError(f'{section}.{name}', value, f'in a scene file with {section}.file',
                                  'a recorded scene has the times and values themselves')
 

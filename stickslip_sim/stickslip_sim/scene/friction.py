@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The friction of a scene, from effective values: forwards, and backwards where that differs."""
+"""The friction of a scene, from complete values: forwards, and backwards where that differs."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -40,7 +40,7 @@ _EXCESS: dict[str, Callable[..., SmoothExcess]] = {'cosine': smooth.cosine, 'pow
 
 
 def friction_of(values: Mapping[str, Any]) -> Friction:
-    """Return the friction of effective values; raises InputError."""
+    """Return the friction of complete values; raises InputError."""
     forwards = {name: value for name, value in values.items() if _INSIDE not in name}
     changes = {forward_name(name): value for name, value in values.items() if _INSIDE in name}
     friction = _one_way(forwards)

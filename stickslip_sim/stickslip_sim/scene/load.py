@@ -11,7 +11,7 @@ from functools import cache
 from typing import NamedTuple
 
 from ..core.errors import InputError, not_utf8, paths_beside, suggestion
-from .build import build_scene
+from .build import scene_from_values
 from .model import Scene
 from .ros_yaml import LISTS_LIMIT, read_yaml
 from .schema import BY_NAME, NULL
@@ -31,7 +31,7 @@ class Section(NamedTuple):
     """The parameters of a file for the nodes whose full names fit a pattern, such as `/x/feed_axis` or `/**`."""
 
     pattern: str
-    parameters: Sequence[tuple[str, object]]   # by dotted name
+    values: Sequence[tuple[str, object]]   # by dotted name
 
     def fits(self, node: str) -> bool:
         """Return whether a node has these parameters, by its full name."""
@@ -48,8 +48,8 @@ class Section(NamedTuple):
         return self.pattern.strip('/').split('/')
 
 
-def parameters_of(document: object) -> dict[str, object]:
-    """Return the parameters for the node of the axis by dotted name, from a file that is for one axis only.
+def values_of(document: object) -> dict[str, object]:
+    """Return the values for the node of the axis by dotted name, from a file that is for one axis only.
 
     Sections that match (`/**`, `/feed_axis`, in any namespace) are merged, and none may repeat what another gives, so
     that their order does not matter.  Raises InputError on anything else in the file.
@@ -59,7 +59,7 @@ def parameters_of(document: object) -> dict[str, object]:
         if section.pattern not in _ALL_NODES and not section.pattern.endswith(f'/{NODE}'):
             raise InputError('node', section.pattern, f'/** or {NODE}',
                              'a scene file holds the parameters of one axis only')
-        for name, value in section.parameters:
+        for name, value in section.values:
             if name in values:
                 raise InputError(name, value, 'given once', 'it stands in this file twice; drop one')
             values[name] = value
@@ -69,12 +69,12 @@ def parameters_of(document: object) -> dict[str, object]:
 
 
 def without_those_of_ros(values: Mapping[str, object]) -> dict[str, object]:
-    """Return the parameters that are of a scene and not of every node."""
+    """Return the values that are of a scene and not of every node."""
     return {name: value for name, value in values.items() if not name.startswith(_OF_ROS)}
 
 
 def of_a_scene(values: Mapping[str, object]) -> dict[str, object]:
-    """Return the parameters that are of a scene: neither of every node, nor of the node of an axis alone."""
+    """Return the values that are of a scene: neither of every node, nor of the node of an axis alone."""
     return {name: value for name, value in without_those_of_ros(values).items() if name not in _OF_THE_NODE}
 
 
@@ -141,18 +141,13 @@ def read_scene(name_or_path: str) -> SceneFile:
     """Return what the file of a shipped scene, or another one, says; raises InputError."""
     path = _find(name_or_path)
     text = read_text(path)
-    values = _shipped_parameters(text) if path.parent == _SHIPPED else parameters_of(read_yaml(text))
+    values = _shipped_values(text) if path.parent == _SHIPPED else values_of(read_yaml(text))
     return SceneFile(values, _first_comment(text), path.parent)
 
 
 def parse_scene(text: str) -> Scene:
     """Return the scene whose own text this is, `Scene.text`, with all of its values; raises InputError."""
-    return scene_of_parameters(parameters_of(read_yaml(text)), _first_comment(text))
-
-
-def scene_of_parameters(values: Mapping[str, object], summary: str = '') -> Scene:
-    """Return the scene of parameters that are all of its values; raises InputError."""
-    return build_scene(stated(of_a_scene(values)), summary)
+    return scene_from_values(stated(of_a_scene(values_of(read_yaml(text)))), _first_comment(text))
 
 
 def named_scene(values: Mapping[str, object], name: object = None) -> dict[str, object]:
@@ -163,7 +158,7 @@ def named_scene(values: Mapping[str, object], name: object = None) -> dict[str, 
     """
     name = name or values.get('scene')
     if name in scene_names():
-        return _shipped_parameters(read_text(_find(str(name))))
+        return _shipped_values(read_text(_find(str(name))))
     if isinstance(name, str) and name.endswith(ENDINGS):
         raise InputError('scene', name, 'a name in a file', 'give the file of that scene itself')
     left_out = [part for part in _NEEDED if not any(key.startswith(part) for key in values)]
@@ -178,14 +173,6 @@ def values_in_file(scene: Scene) -> dict[str, object]:
     others = [name for name in named_scene(scene.values) if name not in scene.values
               and ((entry := BY_NAME[name]).when is None or entry.when.holds(scene.values))]
     return {**scene.values, **dict.fromkeys(others, NULL)}
-
-
-def scene_from_values(values: Mapping[str, object], name: str = 'unnamed') -> Scene:
-    """Return the scene of values by dotted name, as a file with these values would; None counts as not given.
-
-    `name` is for values without a `scene`.  Raises InputError.
-    """
-    return build_scene({'scene': name, **{key: value for key, value in values.items() if value is not None}})
 
 
 def changed(scene: Scene, changes: Mapping[str, object]) -> Scene:
@@ -211,14 +198,14 @@ def parse_override(text: str) -> tuple[str, object]:
     return name, value
 
 
-def _shipped_parameters(text: str) -> dict[str, object]:
-    """Return the parameters of a shipped scene; each is parsed once, which takes most of the time of loading it."""
+def _shipped_values(text: str) -> dict[str, object]:
+    """Return the values of a shipped scene; each is parsed once, which takes most of the time of loading it."""
     return {name: list(value) if isinstance(value, list) else value for name, value in _parsed(text).items()}
 
 
 @cache
 def _parsed(text: str) -> dict[str, object]:
-    return parameters_of(read_yaml(text))
+    return values_of(read_yaml(text))
 
 
 def _find(name: str) -> pathlib.Path:

@@ -147,7 +147,7 @@ class ProfileSource(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """One scene; `values` are all effective parameters by dotted name, `text` is the same as a parameter file.
+    """One scene; `values` are all of its parameters by dotted name, `text` is the same as a parameter file.
 
     `hash` is the sha256 of the text in hexadecimal.  `summary` is one line for people and no part of the scene, nor are
     the `sources` of profiles from files, by section.

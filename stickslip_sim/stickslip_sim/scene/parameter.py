@@ -35,7 +35,7 @@ class When:
     values: tuple[object, ...]
 
     def holds(self, values: Mapping[str, object]) -> bool:
-        """Return whether the parameter has a meaning among these effective values."""
+        """Return whether the parameter has a meaning among these values."""
         return values.get(self.name) in self.values
 
     def __str__(self) -> str:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""From the values given to the effective ones: names known, types and ranges right, defaults in place."""
+"""The values of a scene, completed: names known, types and ranges right, defaults in place."""
 
 import difflib
 import json
@@ -14,23 +14,22 @@ from .parameter import Parameter, When, yaml_word
 from .schema import BY_NAME, NULL, PARAMETERS
 
 
-def effective_values(given: Mapping[str, object]) -> dict[str, object]:
+def complete_values(values: Mapping[str, object]) -> dict[str, Any]:
     """Return the value of every parameter that has a meaning, in the order of the schema; None counts as not given.
 
     Raises InputError on unknown names, wrong types and ranges, missing parameters, and those that contradict a choice.
     """
-    given = {name: value for name, value in given.items() if value is not None}
+    given = {name: value for name, value in values.items() if value is not None}
     for name, value in given.items():
         if name not in BY_NAME:
             raise _unknown(name, value)
-    values: dict[str, object] = {}
+    complete: dict[str, object] = {}
     for entry in PARAMETERS:   # a choice stands before the parameters that depend on it
-        value = given.get(entry.name)
-        if value is not None:
-            values[entry.name] = _given(entry, value, values)
-        elif entry.when is None or entry.when.holds(values):
-            _leave_out(entry, values)
-    return values
+        if entry.name in given:
+            complete[entry.name] = _checked(entry, given[entry.name], complete)
+        elif entry.when is None or entry.when.holds(complete):
+            _leave_out(entry, complete)
+    return complete
 
 
 def section_of(values: Mapping[str, Any], section: str) -> dict[str, Any]:
@@ -62,7 +61,7 @@ def _outlived(name: str, changes: Mapping[str, object]) -> bool:
     return changes[entry.when.name] not in entry.when.values
 
 
-def _given(entry: Parameter, value: object, values: Mapping[str, object]) -> object:
+def _checked(entry: Parameter, value: object, values: Mapping[str, object]) -> object:
     checked = entry.checked(value)
     if entry.when is not None and not entry.when.holds(values):
         when = _deciding(entry.when, values)
@@ -102,13 +101,13 @@ def _unknown(name: str, value: object) -> InputError:
     return InputError(name, value, allowed, fix)
 
 
-# A scene as text: one canonical ROS 2 parameter file for one set of effective values.
+# A scene as text: one canonical ROS 2 parameter file for one set of values.
 
 _WHOLE = re.compile(r'(?<![.\d])(\d+)(?=e)')   # of a number without a dot
 
 
 def scene_text(values: Mapping[str, object], remarks: Mapping[str, str] | None = None) -> str:
-    """Return effective values as a scene file, in the order of the schema; equal values give equal text.
+    """Return complete values as a scene file, in the order of the schema; equal values give equal text.
 
     `remarks` are put behind parameters, by their names, as comments.
     """
@@ -138,7 +137,7 @@ def _indent(depth: int) -> str:
 
 
 def yaml_value(entry: Parameter, value: object) -> str:
-    """Return an effective value as it is written in a scene file, or `null`."""
+    """Return a value as it is written in a scene file, or `null`."""
     if value == NULL:
         return NULL
     if isinstance(value, tuple) and entry.type == 'double_array':

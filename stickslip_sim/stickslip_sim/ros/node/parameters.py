@@ -16,7 +16,8 @@ from ...bags.topics import CLOCK
 from ...core.errors import InputError, suggestion
 from ...inputs.profile_file import sections_with_file
 from ...inputs.scene_files import load_scene, scene_with_profiles
-from ...scene.load import DEFAULT_SCENE, ENDINGS, named, of_a_scene, scene_from_values, scene_names
+from ...scene.build import scene_from_values
+from ...scene.load import DEFAULT_SCENE, ENDINGS, named, of_a_scene, scene_names
 from ...scene.model import Scene
 from ...scene.parameter import Parameter as Entry
 from ...scene.plausible import OF_NODE, check_plausible
