@@ -40,7 +40,6 @@ class Drive:
         self._target: float | None = None
         self._acceleration = math.inf    # with which it makes for it
         self._frozen = False
-        self.is_new = False              # since its profile was last taken
 
     @property
     def profile(self) -> Input:
@@ -60,7 +59,6 @@ class Drive:
         if target != self._target or acceleration != self._acceleration:
             self._target, self._acceleration = target, acceleration
             if not self._frozen:
-                self.is_new = True
                 self._profile = (target if acceleration == math.inf
                                  else _ramp(self._at(now), target, now, acceleration))
         return is_followed
@@ -71,7 +69,6 @@ class Drive:
             self._profile = self._own
             if self._target is not None:
                 self._profile = _ramp(0.0, self._target, now, self._acceleration)
-        self.is_new |= frozen != self._frozen
         self._frozen = frozen
 
     def checkpoint(self) -> list[Any]:

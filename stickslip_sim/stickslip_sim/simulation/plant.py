@@ -43,10 +43,9 @@ class Plant:
     """
 
     def __init__(self, simulator: Simulator, drive: Drive, force: InputProfile, faults: Faults) -> None:
-        self.is_changed = False          # something, since `act`
-        self._has_new_parts = False      # another axis, or other faults
+        self.is_changed = False          # something was ordered, or other faults are in force, since `act`
         self._simulator, self._drive, self._faults = simulator, drive, faults
-        self._axis = simulator.axis      # without faults
+        self._axis = self._entered = simulator.axis      # ordered, and acting; both without faults
         self._force = force              # without faults
         self._friction_scale = 1.0
 
@@ -66,19 +65,19 @@ class Plant:
 
     def change_axis(self, axis: Axis) -> None:
         """Go on with other parameters."""
-        self._axis = axis
-        self.change_faults()
-
-    def change_faults(self) -> None:
-        """Take note that other faults are in force."""
-        self.is_changed = self._has_new_parts = True
+        self._axis, self.is_changed = axis, True
 
     def act(self) -> None:
         """Let all that changed take effect at once; raises SolverError when the faults leave no axis to go on with."""
-        if self._has_new_parts:
-            self._enter_parts()
-        else:
-            self._set_inputs()
+        scale = math.prod(self._faults.values('friction_scale'))
+        is_other = self._axis is not self._entered or scale != self._friction_scale
+        falls, self._friction_scale, self._entered = scale < self._friction_scale, scale, self._axis
+        self._drive.freeze(bool(self._faults.values('drive_freeze')), self._simulator.time)
+        if is_other and not falls:
+            self._change_axis(scale)
+        self._set_inputs()
+        if falls:    # last: what held before and holds afterwards must not break away in between
+            self._change_axis(scale)
         self.is_changed = False
 
     def checkpoint(self) -> dict[str, Any]:
@@ -95,17 +94,6 @@ class Plant:
         axis = with_friction_scaled(self._axis, self._friction_scale)
         self._simulator.restore(saved['simulator'], axis, self._drive.profile, acting_force)
 
-    def _enter_parts(self) -> None:
-        scale = math.prod(self._faults.values('friction_scale'))
-        falls, self._friction_scale = scale < self._friction_scale, scale
-        self._drive.freeze(bool(self._faults.values('drive_freeze')), self._simulator.time)
-        if not falls:
-            self._change_axis(scale)
-        self._set_inputs()
-        if falls:    # last: what held before and holds afterwards must not break away in between
-            self._change_axis(scale)
-        self._has_new_parts = False
-
     def _change_axis(self, friction_scale: float) -> None:
         try:
             axis = with_friction_scaled(self._axis, friction_scale)
@@ -116,8 +104,8 @@ class Plant:
 
     def _set_inputs(self) -> None:
         pulse = math.fsum(self._faults.values('force_pulse')) if self._faults.active else 0.0
-        force, acting = self._force.plus(pulse) if pulse else self._force, self._simulator.force
-        is_same = force is acting or force == acting
-        if self._drive.is_new or not is_same:
-            self._drive.is_new = False
-            self._simulator.set_inputs(self._drive.profile, acting if is_same else force)
+        ordered = self._drive.profile, self._force.plus(pulse) if pulse else self._force
+        acting = self._simulator.drive, self._simulator.force
+        if ordered != acting:
+            drive, force = (old if new == old else new for new, old in zip(ordered, acting))
+            self._simulator.set_inputs(drive, force)

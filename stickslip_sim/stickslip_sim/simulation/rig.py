@@ -44,6 +44,9 @@ class Rig:
     """Makes one step after the other; what is ordered between two takes effect with the next, all of it at once.
 
     A commanded velocity passes the command channel, and the drive follows it within its limits; a force acts at once.
+    Each policy of a command is in one place: its range in the slot where it arrives (`realtime.commands`), which counts
+    what it refuses; the reaction to silence here, where commands are refused, and counted, until it is cleared; the
+    limits in `Drive`.  Whether something changed since the last step is known to the plant alone.
     """
 
     def __init__(self, axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile,
@@ -114,7 +117,7 @@ class Rig:
         fault = self._faults.clear(fault_id)
         self._rig_events.append(RigEvent(RigEventKind.FAULT_CLEARED, fault.id, f'{fault.kind} cleared', fault.value,
                                          fault=fault))
-        self._plant.change_faults()
+        self._plant.is_changed = True
 
     def idle_reason(self, fault: Fault) -> str:
         """Return why a fault does nothing here; empty for one that acts."""
@@ -254,7 +257,7 @@ class Rig:
                                                                              begun)):
             self._rig_events.extend(RigEvent(kind, fault.id, f'{fault.kind} {word}', fault.value, fault=fault)
                                     for fault in faults)
-        self._plant.change_faults()
+        self._plant.is_changed = True
 
 
 _NEVER = 2**62    # a step that no run reaches

@@ -56,6 +56,11 @@ class Simulator:
         return self._solved.axis
 
     @property
+    def drive(self) -> Input:
+        """The drive velocity in force, m/s."""
+        return self._inputs.drive
+
+    @property
     def force(self) -> Input:
         """The external force in force, N."""
         return self._inputs.force
