@@ -224,7 +224,7 @@ class RecordedFile:
                 for record in summary_of(file, self._is_checked):
                     if isinstance(record, Statistics):
                         statistics = record
-                    elif isinstance(record, ChunkIndex):
+                    elif isinstance(record, ChunkIndex) and not self._is_checked:    # else all of it is read in order
                         self._chunks.append(_Chunk(record.message_start_time, record.message_end_time,
                                                    record.chunk_start_offset))
                     elif isinstance(record, (AttachmentIndex, MetadataIndex)):
