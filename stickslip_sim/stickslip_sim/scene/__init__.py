@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scenes: everything that decides a run, as a ROS 2 parameter file.  Finding and loading files is in `inputs`.
 
-
 A scene is a mapping of `values` by dotted name all the way: as a file states them (`read_scene`), with `changes` on top
 (`overridden`), checked and complete (`complete_values`, `Scene.values`).
 """
