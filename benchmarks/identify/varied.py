@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Axes of every kind through sensors of every kind: what a right model must hold on.
 
-Unlike the feeds of `machines`, theirs are not chosen to excite the axis: a constant feed, a few steps, there and back,
+Unlike the feeds of `axes`, theirs are not chosen to excite the axis: a constant feed, a few steps, there and back,
 a ramp, a sine, or a motor that drives the slider without a spring.  What a run does not show must be called so.
 """
 
@@ -15,13 +15,23 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import scene_from_values
 
-from .axes import SyntheticAxis, any_free_of, start_of
-from .machines import CONTACTS, KINETIC_LAWS, STATIC_LAWS, Values, between, even_ratios, machine_values
+from .axes import (
+    CONTACTS,
+    KINETIC_LAWS,
+    STATIC_LAWS,
+    SyntheticAxis,
+    Values,
+    any_free_of,
+    between,
+    even_ratios,
+    machine_values,
+    start_of,
+)
 from .measuring import Sensors
 
 FEEDS = 'constant', 'steps', 'there and back', 'ramp', 'sine', 'motor'
 SLIPS = 5, 60                    # break-aways, at least and at most
-FREE = 2, 7                      # parameters, at least and at most
+VARIED_FREE = 2, 7               # parameters, at least and at most
 SENSORS = 'without noise', 'Gaussian noise', 'encoders that count'
 _DURATIONS = 4.0, 12.0           # s
 _RATES = 500.0, 1000.0, 2000.0   # Hz
@@ -51,7 +61,7 @@ def _axis(rng: Generator, k: int) -> SyntheticAxis:
         events = simulate_events(truth, duration).events
         if SLIPS[0] <= sum(event.kind is EventKind.BREAKAWAY for event in events) <= SLIPS[1]:
             break
-    free = any_free_of(rng, truth, *FREE)
+    free = any_free_of(rng, truth, *VARIED_FREE)
     sensors = _sensors(rng, kind_of(k), slip, feed == 'motor')
     start = start_of(rng, truth, free)
     if feed == 'motor':

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from benchmarks.identify.axes import FARTHEST, FREE, NEAREST, SyntheticAxis, axes, value_of
-from benchmarks.identify.lugre import LuGreAxis
+from benchmarks.identify.foreign import LuGreAxis
 from benchmarks.identify.measuring import OTHERS, Sensors, measure
 from benchmarks.identify.outcomes import Outcome, ParameterOutcome, load, models_of, outcome_of, save
-from benchmarks.identify.page_varied import of_every_kind
+from benchmarks.identify.page import of_every_kind
 from benchmarks.identify.varied import FEEDS, SENSORS, kind_of, varied_axes
 from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE
 from stickslip_sim.inputs.measurement import load_measurement
@@ -62,8 +62,7 @@ def test_sensors_count_in_steps_and_have_noise(tmp_path: Path, few: list[Synthet
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('words', OTHERS)
-@pytest.mark.parametrize('k', range(0, FEW, 4))
+@pytest.mark.parametrize(('k', 'words'), [(0, 'without noise'), (4, '1 µm of noise')])
 def test_right_models_are_not_rejected_and_what_is_found_is_near(few: list[SyntheticAxis], k: int, words: str) -> None:
     outcome = outcome_of(few[k]._replace(sensors=OTHERS[words]))
     assert outcome.fits

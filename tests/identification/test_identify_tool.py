@@ -4,18 +4,18 @@
 
 import csv
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from stickslip_sim.identification import many_fits
+from stickslip_sim.identification import many_fits, starts
 from stickslip_sim.identification.many_fits import WorkFolder
 from stickslip_sim.identification.stages import fit_from
 from stickslip_sim.inputs import load_scene
-from tests.support.measured_axes import FREE, VALUES, Readings, free_file, readings, start_scene
+from tests.support.measured_runs import FREE, VALUES, Readings, free_file, readings, start_scene
 from tests.support.tool import Capture, answered, refused
 
 pytestmark = pytest.mark.slow
@@ -78,7 +78,7 @@ def test_from_a_file_to_a_scene_that_the_other_verbs_take(tmp_path: Path, start:
 
 def test_a_model_that_does_not_fit_has_its_files_and_exit_code_3(tmp_path: Path, start: Path, capsys: Capture) -> None:
     """The axis has half the mass of the scene, and that is not free."""
-    run, out = imported(tmp_path, readings({**VALUES, 'axis.mass': 50.0}), capsys), tmp_path / 'found'
+    run, out = imported(tmp_path, readings({**VALUES, 'axis.mass': 50.0}, 2.0), capsys), tmp_path / 'found'
     code, said, error = answered(capsys, 'identify', run, '--scene', start, '--free', free_file(tmp_path / 'free.yaml'),
                                  '--out', out)
     assert code == 3
@@ -114,24 +114,25 @@ def few() -> Readings:
     return readings(rate=2.0, duration=0.5)
 
 
-WRONG: Mapping[str, tuple[object, Mapping[str, tuple[float, float]], tuple[str, ...]]] = {
-    'no motion': (without_motion, FREE, ('the slider moves',)),
-    'no stick': (without_stick, FREE, ('friction.static.initial', 'no rest')),
-    'another clock': (with_another_clock, FREE, ('jump of its time',)),
-    'another unit': (in_millimetres, FREE, ('the unit of the position',)),
+WRONG: Mapping[str, tuple[Callable[[], Readings], Mapping[str, tuple[float, float]], tuple[str, ...]]] = {
+    'no motion': (without_motion, FREE, ('a position that changes by', 'the slider moves')),
+    'no stick': (without_stick, FREE, ('friction.static.initial', 'there is no rest between two motions')),
+    'another clock': (with_another_clock, FREE, ('a jump of its time from 2 to',)),
+    'another unit': (in_millimetres, FREE, ('look at the unit of the position',)),
     'too few readings': (few, FREE, ('samples',)),
     'fixed by the law': (readings, {'friction.static.time_constant': (0.1, 1.0)},
-                         ('friction.static.time_constant', 'friction.static.law')),
-    'start out of range': (readings, {'axis.drive_stiffness': (1.8e5, 3e5)}, ('axis.drive_stiffness', '160000')),
+                         ('friction.static.time_constant', 'one that the laws of the scene have')),
+    'start out of range': (readings, {'axis.drive_stiffness': (1.8e5, 3e5)},
+                           ('axis.drive_stiffness = 160000.0 is refused: must be in its range',)),
     'not of the scene': (readings, {'axis.drive_stifness': (1e5, 3e5)}, ('did you mean axis.drive_stiffness?',)),
-    'no such channel': (readings, {'sensor.velocity.offset': (-1.0, 1.0)}, ('sensor.velocity.offset',)),
+    'no such channel': (readings, {'sensor.velocity.offset': (-1.0, 1.0)},
+                        ('sensor.velocity.offset', 'of a channel that was measured: position')),
 }
 
 
 @pytest.mark.parametrize('case', WRONG)
 def test_bad_input_gets_one_line_and_writes_nothing(case: str, tmp_path: Path, start: Path, capsys: Capture) -> None:
     measured, free, words = WRONG[case]
-    assert callable(measured)
     run = imported(tmp_path, measured(), capsys, *{
         'no motion': ('--stick-velocity', '1e-4'), 'another unit': ('--meant', 'position')}.get(case, ()))
     before = set(tmp_path.iterdir())
@@ -182,6 +183,7 @@ def without_a_fit(tmp_path: Path, start: Path, capsys: Capture) -> tuple[Path | 
 def test_an_interrupted_one_ends_as_one_of_two_processes(without_a_fit: tuple[Path | str, ...], tmp_path: Path,
                                                          capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     whole, cut = tmp_path / 'whole', tmp_path / 'cut'
+    monkeypatch.setattr(starts, 'N_STARTS', 1)   # of eight: a few fits are enough
     assert answered(capsys, *without_a_fit, whole, '--workers', '2')[0] == 3
     done: list[int] = []
 

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
-from stickslip_sim.recording import write_measured
 from stickslip_sim.scene import Scene, changed, scene_from_values
-from tests.support.measured_runs import COMPLIANT, between, truth
+from tests.support.measured_runs import COMPLIANT, as_run, between, truth
 
 pytestmark = pytest.mark.slow
 
@@ -37,8 +36,7 @@ def shown(folder: Path, axis: Scene, duration: float, rate: float, noise: float,
     if has_force:
         force = samples['drive_force']
         columns['drive_force'] = force + force_error * np.ptp(force) * np.sin(samples['time'])
-    write_measured(folder, samples['time'], columns, {})
-    return stickslip.read_run(folder)
+    return as_run(folder, samples['time'], columns)
 
 
 def test_a_force_without_noise_is_followed_as_closely_as_a_model_can(tmp_path: Path) -> None:
@@ -76,10 +74,10 @@ def test_a_table_whose_error_no_test_sees_moves_no_number(tmp_path: Path) -> Non
     samples = stickslip.simulate(changed(HEAVY, {'friction.kinetic.tolerance': 1e-7}), 6.0, 1e-3).samples
     random, force = np.random.default_rng(2), samples['drive_force']
     shape = samples['time'].shape
-    write_measured(tmp_path / 'run', samples['time'], {
+    run = as_run(tmp_path / 'run', samples['time'], {
         'position': samples['position'] + 1e-6 * random.standard_normal(shape),
-        'drive_force': force + 0.02 * np.sqrt(np.mean(force**2)) * random.standard_normal(shape)}, {})
-    found = stickslip.identify(stickslip.read_run(tmp_path / 'run'), changed(HEAVY, {
+        'drive_force': force + 0.02 * np.sqrt(np.mean(force**2)) * random.standard_normal(shape)})
+    found = stickslip.identify(run, changed(HEAVY, {
         'axis.mass': 1390.0, 'friction.kinetic.limit': 0.07373}), {
             'axis.mass': between(911.0, 2720.0), 'friction.kinetic.limit': between(0.0315, 0.106)})
     assert found.fits, found.misfits
@@ -107,7 +105,7 @@ RINGING = scene_from_values({
 
 def test_a_contact_that_rings_on_after_each_slip(tmp_path: Path) -> None:
     """What looks like a rest is none, and stretches from there on lead away from the truth, even from itself."""
-    run = shown(tmp_path / 'run', RINGING, 10.0, 500.0, 0.0, has_force=False)
+    run = shown(tmp_path / 'run', RINGING, 6.0, 500.0, 0.0, has_force=False)
     found = stickslip.identify(run, RINGING, {
         'axis.drive_stiffness': between(3e4, 7e4), 'contact.stiffness': between(2e5, 5e5),
         'friction.kinetic.coefficients[0]': between(0.07, 0.2), 'friction.kinetic.velocities[1]': between(0.007, 0.02),

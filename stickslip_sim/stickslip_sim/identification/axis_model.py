@@ -3,11 +3,11 @@
 """The axis with trial values of its free parameters: what it is, and what it does from a known state on."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -36,6 +36,7 @@ from .readings import OUTPUTS, SensorReadings, drives_directly
 # makes up for their error by wrong numbers, and stays there with those of its end.
 
 Breakpoints = tuple[Breakpoint, ...]
+_Made = TypeVar('_Made')
 
 _LAW = 'friction.kinetic.'
 _EXCESS = 'friction.excess.'
@@ -168,7 +169,7 @@ class AxisModel:
         return again
 
     def _take_inputs(self, measurement: SensorReadings) -> None:
-        self._measurement, self._profiles = measurement, dict[object, Any]()
+        self._measurement, self._of_inputs = measurement, dict[object, Any]()
         force = measurement.force or constant(0.0)
         self._force = np.array([force.starts, force.values, force.rates])
 
@@ -239,8 +240,13 @@ class AxisModel:
                 gain[one.sensor[1]] = value
         return gain['offset'], gain['scale']
 
-    def state_after(self, motion: MeasuredMotion, dynamics: Dynamics, values: Numbers) -> InitialState:
-        """Return the state at the end of a measured motion: at rest, the spring as far stretched as it must be."""
+    def state_after(self, motion: MeasuredMotion | None, dynamics: Dynamics, values: Numbers) -> InitialState:
+        """Return the state at the end of a measured motion: at rest, the spring as far stretched as it must be.
+
+        Without a motion it is that at the start of the run.
+        """
+        if motion is None:
+            return dynamics.initial
         offset, scale = self.gain(values, 'position')
         position = (motion.stop - offset) / scale
         gone = self._travelled(dynamics.drive, motion.end)
@@ -283,22 +289,20 @@ class AxisModel:
         """Return a profile from a time on; kept, where no free parameter changes it."""
         if begin == 0.0:
             return profile
-        kept = self._keeps_drive if which == 'drive' else self._keeps_force
-        if not kept:
-            return shifted(profile, begin, duration)
-        key = which, begin, duration
-        if key not in self._profiles:
-            self._profiles[key] = shifted(profile, begin, duration)
-        found: InputProfile = self._profiles[key]
-        return found
+        return self._kept((which, begin, duration), self._keeps_drive if which == 'drive' else self._keeps_force,
+                          lambda: shifted(profile, begin, duration))
 
     def _travelled(self, drive: InputProfile, time: float) -> float:
-        if not self._keeps_drive:
-            return float(travelled(drive, np.array([time]))[0])
-        key = 'travelled', time
-        if key not in self._profiles:
-            self._profiles[key] = float(travelled(drive, np.array([time]))[0])
-        return float(self._profiles[key])
+        return self._kept(('travelled', time), self._keeps_drive, lambda: float(travelled(drive, np.array([time]))[0]))
+
+    def _kept(self, key: object, keeps: bool, make: Callable[[], _Made]) -> _Made:
+        """Return what is made, kept under a key if it may be."""
+        if not keeps:
+            return make()
+        if key not in self._of_inputs:
+            self._of_inputs[key] = make()
+        found: _Made = self._of_inputs[key]
+        return found
 
 
 class TrialMotion:

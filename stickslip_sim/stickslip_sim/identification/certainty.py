@@ -9,7 +9,6 @@ ranges along them.
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,10 +16,10 @@ from numpy.typing import NDArray
 from scipy.special import gammaincinv
 
 from ..core.arrays import Numbers
-from .fit_problem import FitProblem, Stretches
+from .fit_problem import FitProblem
 from .free_parameters import FreeParameter
 from .identified import FOUND, LEVEL, NOT_IDENTIFIABLE, Combination, Estimate
-from .least_squares import Solution, minimise, slopes_of
+from .least_squares import Solution, minimise, slopes_of, square_cost
 
 QUANTILE = 2.0 * float(gammaincinv(0.5, LEVEL))   # of the rise of the sum of squares at the ends of an interval
 _LOST = 0.3      # of the range of a parameter: a standard deviation so large says nothing
@@ -50,7 +49,7 @@ def certainty_of(information: Numbers, inflation: float, parameters: Sequence[Fr
     """Return what JᵀJ (k, k) of all residuals says; `inflation` is the factor on the covariance."""
     moves = np.diag(information) > 0.0   # not what is held
     scale = np.sqrt(np.where(moves, np.diag(information), 1.0))
-    widths = _widths(parameters)
+    widths = np.array([one.width for one in parameters])
     sizes, vectors = np.linalg.eigh(information / np.outer(scale, scale))
     covariance = np.zeros_like(information)
     for size, way in zip(sizes, (vectors / scale[:, None]).T):
@@ -67,7 +66,7 @@ def combinations_of(information: Numbers, parameters: Sequence[FreeParameter]) -
     squares, turned = np.linalg.eigh(information)
     rounding = _ROUNDING * np.diag(information) @ turned**2
     sizes, vectors = np.sqrt(np.where(squares > rounding, squares, 0.0)), turned.T
-    widths = _widths(parameters)
+    widths = np.array([one.width for one in parameters])
     found = []
     for size, vector in zip(sizes, vectors):
         weights = vector / vector[np.abs(vector).argmax()]
@@ -81,10 +80,6 @@ def combinations_of(information: Numbers, parameters: Sequence[FreeParameter]) -
         powers = tuple(_plain(float(weights[k])) for k in rows)
         found.append(Combination(names, powers, spread, _statement(names, powers)))
     return tuple(found)
-
-
-def _widths(parameters: Sequence[FreeParameter]) -> Numbers:
-    return np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
 
 
 def _plain(weight: float) -> float:
@@ -136,9 +131,8 @@ def covariance_by_inputs(problem: FitProblem, best: Solution, changes: list[Numb
     """Return the covariance (k, k) of what the fit works on, from the changes of the residuals."""
     if not changes:
         return np.zeros((len(best.point), len(best.point)))
-    stretches = problem.stretches()
-    slopes = slopes_of(lambda point: problem.of_stretches(point, stretches), best.point,
-                       problem.of_stretches(best.point, stretches), problem.region, problem.steps)
+    residuals = problem.of_run()
+    slopes = slopes_of(residuals, best.point, residuals(best.point), problem.region, problem.steps)
     scales = np.outer(*2 * [np.sqrt(np.diag(best.information))])
     moves = np.array(changes) @ slopes @ (np.linalg.pinv(best.information / scales, hermitian=True) / scales)
     return np.asarray(moves.T @ moves / len(changes))
@@ -176,7 +170,7 @@ class Profile:
 
     def __init__(self, problem: FitProblem, best: Solution, known: Certainty, inflation: float, k: int) -> None:
         self._problem, self._best, self._k = problem, best, k
-        self._stretches: Stretches = problem.stretches()
+        self._residuals = problem.of_run()
         self._limit = QUANTILE * inflation
         self._slope = known.covariance[:, k] / known.covariance[k, k]
         self._reach = float(np.sqrt(QUANTILE) * known.deviations[k])
@@ -238,8 +232,7 @@ class Profile:
             begin = region.inside(near.point)
         cost, point = self._cost(begin), begin
         if np.isfinite(cost):
-            found = minimise(partial(self._problem.of_stretches, stretches=self._stretches), begin, region, most=10,
-                             tolerance=1e-3 * self._limit)
+            found = minimise(self._residuals, begin, region, most=10, tolerance=1e-3 * self._limit)
             cost, point = found.cost, found.point
         return _Place(at, float(np.sqrt(max(cost - self._best.cost, 0.0) / self._limit)), point)
 
@@ -248,8 +241,7 @@ class Profile:
         return self._problem.region.holding(self._k, at).inside(near.point + (at - near.at) * self._slope)
 
     def _cost(self, point: Numbers) -> float:
-        residuals = self._problem.of_stretches(point, self._stretches)
-        return float(residuals @ residuals) if np.isfinite(residuals[0]) else np.inf
+        return square_cost(self._residuals(point))
 
 
 def with_profile_intervals(estimates: Sequence[Estimate], problem: FitProblem, best: Solution, known: Certainty,

@@ -1,7 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Mass and friction from a measured force that drives the slider by itself.
+"""Numbers that readings say by themselves, before any fit: those of friction, of the drive, and of a free slider.
 
+A measured force that drives the slider by itself shows its mass and friction:
 F = m ẍ + N mu_k(|ẋ|) sign ẋ while it slides, and F = N mu_s sign F where it breaks away.
 Velocity and acceleration are those of parabolas through the position.  So is the force, through its integral over the
 integral: a step of it spreads as the acceleration that it makes.
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 from ..core.arrays import Numbers
 from ..core.input_profile import InputProfile
 from .axis_model import AxisModel
-from .free_parameters import FreeParameter, Region
+from .free_parameters import FreeParameter, Region, values_at
 from .least_squares import minimise
 from .measured_inputs import travelled
 from .motions import track_of
@@ -191,11 +192,11 @@ def direct_motion(model: AxisModel, parameters: Sequence[FreeParameter], measure
     `start` (k,) and the region are as the fit works on them.  An offset of the force and friction that differs by
     direction do the same while the slider slides; at a break-away they do not.
     """
-    spread = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
+    spread = np.array([one.width for one in parameters])
     forwards = motion.velocity > 0.0
 
     def residuals(point: Numbers) -> Numbers:
-        values = np.array([one.outer(number) for one, number in zip(parameters, point.tolist(), strict=True)])
+        values = values_at(parameters, point)
         dynamics = model.dynamics(values)
         if dynamics is None:
             return np.full(len(motion.rows) + len(slips) + len(point), np.nan)

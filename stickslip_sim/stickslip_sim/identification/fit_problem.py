@@ -4,6 +4,7 @@
 
 from collections.abc import Container, Sequence
 from copy import copy
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +15,8 @@ from ..core.time_grid import Instants
 from .axis_model import OUTPUT_PLACES, AxisModel
 from .direct import DirectMotion, direct_drive, direct_motion, force_noise_of, sliding_motion
 from .force_noise import NoiseFilter, filters_of, white_of
-from .free_parameters import FreeParameter, Region, region_of
-from .least_squares import STEP
+from .free_parameters import FreeParameter, Region, region_of, values_at
+from .least_squares import STEP, Residuals
 from .motions import MeasuredMotion, ends_in_rest, has_break_away, stops_of, track_of
 from .readings import Channel, SensorReadings, instants_of
 from .run_start import start_force
@@ -83,7 +84,7 @@ class FitProblem:
         self._start_force = start_force(measurement)
         self._is_stretch = np.array([self._start_force is not None and one.prior is None and one.name == _STRETCH
                                      for one in parameters])
-        self.widths = np.array([one.inner(one.high) - one.inner(one.low) for one in parameters])
+        self.widths = np.array([one.width for one in parameters])
         self._mass, self._force_noise = model.scene.axis.mass, force_noise_of(measurement)
         self._filters: tuple[NoiseFilter | None, ...] = (None,) * len(measurement.channels)
         self._sliding = self._of_sliding()
@@ -153,7 +154,7 @@ class FitProblem:
 
     def values(self, point: Numbers) -> Numbers:
         """Return the values of the parameters at a point (k,), in their units."""
-        return np.array([one.outer(number) for one, number in zip(self.parameters, point.tolist(), strict=True)])
+        return values_at(self.parameters, point)
 
     def of_slips(self, point: Numbers, slips: Sequence[MeasuredSlip], telling: bool = False) -> Numbers:
         """Return the residuals of the figures of single slips, and of what is known beforehand.
@@ -220,6 +221,10 @@ class FitProblem:
                  for one, part in zip(stretches.filters, parts, strict=True)]
         return np.concatenate([*parts, self.beforehand(point)])
 
+    def of_run(self) -> Residuals:
+        """Return the residuals of the whole run, as a function of a point (k,)."""
+        return partial(self.of_stretches, stretches=self.stretches())
+
     def mean_squares(self, point: Numbers, stretches: Stretches) -> Numbers:
         """Return the mean square of the weighted residuals of each stretch."""
         squares = self.of_stretches(point, stretches)[:-len(point)].reshape(len(stretches.targets), -1)**2
@@ -235,8 +240,7 @@ class FitProblem:
         names = [channel.name for channel in self.measurement.channels]
         columns: list[list[Numbers]] = [[] for _ in names]
         for stretch in stretches.parts:
-            initial = dynamics.initial if stretch.before is None else self.model.state_after(stretch.before, dynamics,
-                                                                                            values)
+            initial = self.model.state_after(stretch.before, dynamics, values)
             rows = self.model.samples(dynamics, stretch.begin, initial, stretch.at)
             if rows is None:
                 return None

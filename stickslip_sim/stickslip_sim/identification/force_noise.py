@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The noise of a measured force, which the motion takes up: filters that make residuals white again.
+"""The noise of a measured force, which the motion takes up: filters that make residuals white, and quiet rests.
 
 A force that drives a slider by itself is simulated as it was measured, with the noise of its sensor; the mass
 integrates it, once to a velocity, twice to a position.  The residuals y of a position are no readings with independent

@@ -9,7 +9,7 @@ A file of them has the format of `stickslip uncertainty --with`; beside the para
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -54,6 +54,11 @@ class FreeParameter:
         first, *rest = self.name.split('.')
         return (rest[0], rest[1]) if first == 'sensor' else None
 
+    @property
+    def width(self) -> float:
+        """The width of the range, as the fit sees it."""
+        return self.inner(self.high) - self.inner(self.low)
+
     def inner(self, value: float) -> float:
         """Return what the fit works on."""
         return math.log(value) if self.logarithmic else value / (self.high - self.low)
@@ -63,6 +68,11 @@ class FreeParameter:
         inside = min(max(number, self.inner(self.low)), self.inner(self.high))   # before exp, which may overflow
         value = math.exp(inside) if self.logarithmic else inside * (self.high - self.low)
         return min(max(value, self.low), self.high)
+
+
+def values_at(parameters: Sequence[FreeParameter], point: Numbers) -> Numbers:
+    """Return the values (k,) of parameters, in their units, at a point (k,) of what the fit works on."""
+    return np.array([one.outer(number) for one, number in zip(parameters, point.tolist(), strict=True)])
 
 
 def free_parameters(scene: Scene, free: str | Path | Mapping[str, object]) -> tuple[FreeParameter, ...]:
@@ -101,7 +111,7 @@ def _free(scene: Scene, distribution: Distribution) -> FreeParameter:
         raise InputError(name, start, f'in its range [{low:g}, {high:g}] in the scene to start from',
                          'widen the range, or start from another value')
     found = FreeParameter(name, _parameter(name)[0].unit, start, low, high)
-    return FreeParameter(name, found.unit, start, low, high, _prior(distribution, found))
+    return replace(found, prior=_prior(distribution, found))
 
 
 def _start(scene: Scene, name: str) -> float:
@@ -139,7 +149,7 @@ def _prior(distribution: Distribution, parameter: FreeParameter) -> tuple[float,
 
 # Where a fit may go: within the ranges, static friction not below kinetic friction, nor its limit below its start.
 #
-# Beyond such a border the axis stays what it is (`friction_tables.put_in_order` raises the lower number), so that a fit
+# Beyond such a border the axis stays what it is (`axis_model.put_in_order` raises the lower number), so that a fit
 # which goes there finds no way back: its sum of squares does not change with the number that is too low.
 
 _KINETIC, _STATIC = 'friction.kinetic.', 'friction.static.'
@@ -187,10 +197,10 @@ class Region:
             found[after] = least + shares[after] * (self.high[after] - least)
         return np.asarray(found)
 
-    def holding(self, place: int, number: float) -> 'Region':
-        """Return the points of it that have a number at a place."""
+    def holding(self, places: int | Sequence[int], numbers: float | Numbers) -> 'Region':
+        """Return the points of it that have a number at a place, or numbers at places."""
         low, high = self.low.copy(), self.high.copy()
-        low[place] = high[place] = number
+        low[places] = high[places] = numbers
         return Region(low, high, self._chain, self._scales)
 
     def borders(self, point: Numbers) -> tuple[Numbers, Numbers]:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What an identification found: the scene that reproduces a measured run, and how well each of its numbers is known."""
 
+import math
 from dataclasses import dataclass
 
 from ..core.arrays import Numbers
@@ -38,6 +39,11 @@ class Estimate:
     def best_interval(self) -> tuple[float, float]:
         """The interval to rely on: that of the profile likelihood where there is one."""
         return self.profile or self.interval
+
+
+def moved(one: Estimate, step: float) -> float:
+    """Return the value of an estimate a step farther: of the logarithm where `logarithmic`, else in its unit."""
+    return one.value * math.exp(step) if one.logarithmic else one.value + step
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+import numpy as np
+
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.version import __version__
@@ -14,7 +16,7 @@ from ..scene import Scene, scene_from_values
 from ..scene.build import Dynamics
 from ..scene.profile_schema import MOST_POINTS
 from ..scene.schema import BY_NAME
-from ..study.variation import parameter_of
+from ..study.points import scene_at
 from .curve.law_in_scene import short_text
 from .identified import AT_BOUND, FOUND, NOT_IDENTIFIABLE, Estimate, Identification
 from .readings import SensorReadings
@@ -90,13 +92,9 @@ def input_texts(found: Identification) -> dict[str, str]:
 
 def rounded_scene(found: Identification) -> Scene:
     """Return the identified scene without digits that mean nothing; all of them where rounding gives no scene."""
-    values = dict(found.scene.values)
-    for one in found.estimates:
-        if not one.name.startswith(OF_SENSORS) and one.kind != NOT_IDENTIFIABLE:
-            entry, index = parameter_of(one.name)
-            values[entry.name] = _put(values[entry.name], index, _rounded(one))
+    known = [one for one in found.estimates if not one.name.startswith(OF_SENSORS) and one.kind != NOT_IDENTIFIABLE]
     try:
-        return scene_from_values(values)
+        return scene_at(found.scene.values, [one.name for one in known], np.array([*map(_rounded, known)]))
     except InputError:
         return found.scene
 
@@ -115,13 +113,6 @@ def interval_words(one: Estimate) -> str:
     if ends[0] != ends[1] or low == high:
         return ' to '.join(ends)
     return f'{ends[0]} ± {quantity(0.5 * (high - low), one.unit, 2)}'
-
-
-def _put(value: object, index: int | None, number: float) -> object:
-    if index is None:
-        return number
-    assert isinstance(value, tuple)
-    return (*value[:index], number, *value[index + 1:])
 
 
 def _rounded(one: Estimate) -> float:

@@ -136,13 +136,12 @@ def _estimates(problem: FitProblem, values: Numbers, known: Certainty, derivatio
 def _estimate(one: FreeParameter, value: float, deviation: float, is_known: bool, derivation: str) -> Estimate:
     inner = one.inner(value)
     ends = one.outer(inner - _SCORE * deviation), one.outer(inner + _SCORE * deviation)
-    margin = _AT_END * (one.inner(one.high) - one.inner(one.low))
+    margin = _AT_END * one.width
     at_end = min(inner - one.inner(one.low), one.inner(one.high) - inner) <= margin
     own = deviation if one.logarithmic else deviation * (one.high - one.low)
     kind = AT_BOUND if at_end else FOUND if is_known else NOT_IDENTIFIABLE
     if kind == NOT_IDENTIFIABLE:
-        return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own,
-                        (one.low, one.high), None, kind, 'the data do not determine it by itself')
+        ends, derivation = (one.low, one.high), 'the data do not determine it by itself'
     return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own, ends, None, kind,
                     derivation)
 

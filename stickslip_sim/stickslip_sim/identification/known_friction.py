@@ -12,9 +12,9 @@ from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..plots.characteristics import Band, Bins, KnownFriction, Scatter
 from ..runs import Run
-from ..scene import Scene, scene_from_values
-from ..study.variation import changes_at
-from .identified import FOUND, Estimate, Identification
+from ..scene import Scene
+from ..study.points import scene_at
+from .identified import FOUND, Estimate, Identification, moved
 from .identified_scene import OF_SENSORS
 from .measured_friction import binned, friction_points, loads_at
 
@@ -83,7 +83,7 @@ def _slope(scene: Scene, one: Estimate, curve: FrictionCurveOf) -> Numbers:
     step = _STEP * one.standard_deviation
     if one.logarithmic:
         step = min(step, _LIMITED)
-    ends = [(sign * step, curve(other)) for sign in (1.0, -1.0) if (other := _moved(scene, one, sign * step))]
+    ends = [(sign * step, curve(other)) for sign in (1.0, -1.0) if (other := _scene_with(scene, one, sign * step))]
     if len(ends) < 2:
         ends.append((0.0, curve(scene)))
     (there, value), (here, other_value) = ends[0], ends[-1]
@@ -91,11 +91,10 @@ def _slope(scene: Scene, one: Estimate, curve: FrictionCurveOf) -> Numbers:
                       else np.zeros_like(value))
 
 
-def _moved(scene: Scene, one: Estimate, step: float) -> Scene | None:
+def _scene_with(scene: Scene, one: Estimate, step: float) -> Scene | None:
     """Return the scene with another value of a number; None where that is none."""
-    value = one.value * math.exp(step) if one.logarithmic else one.value + step
     try:
-        return scene_from_values({**scene.values, **changes_at(scene.values, [one.name], np.array([value]))})
+        return scene_at(scene.values, [one.name], np.array([moved(one, step)]))
     except InputError:
         return None
 

@@ -190,12 +190,18 @@ def _length(move: Numbers, information: Numbers) -> float:
     return float(np.sqrt(np.sum(np.diag(information) * move**2)))
 
 
+def square_cost(residuals: Numbers) -> float:
+    """Return the sum of squares; infinite where there is no motion."""
+    return float(residuals @ residuals) if np.isfinite(residuals[0]) else np.inf
+
+
+def robust_cost(residuals: Numbers, robust: float = 1.0) -> float:
+    """Return half the sum of squares, in units of `robust`, of residuals that beyond it count by their size."""
+    return float(np.sum(np.sqrt(1.0 + (residuals / robust)**2) - 1.0)) if np.isfinite(residuals).all() else np.inf
+
+
 def _cost(residuals: Numbers, robust: float) -> float:
-    if not np.isfinite(residuals[0]):
-        return np.inf
-    if robust == np.inf:
-        return float(residuals @ residuals)
-    return float(2.0 * robust**2 * np.sum(np.sqrt(1.0 + (residuals / robust)**2) - 1.0))
+    return square_cost(residuals) if robust == np.inf else 2.0 * robust**2 * robust_cost(residuals, robust)
 
 
 def _weights(residuals: Numbers, robust: float) -> Numbers | None:

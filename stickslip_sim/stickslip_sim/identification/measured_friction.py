@@ -125,13 +125,9 @@ def _window(slips: list[SlipRows]) -> int:
 
 def _motion(drawn: Mapping[str, Numbers], window: int, period: float) -> tuple[Numbers, Numbers]:
     """Return speed and acceleration, those of a sensor of their own where there is one."""
-    if 'velocity' in drawn and 'position' not in drawn:
-        velocity = _smooth(drawn['velocity'], window, 0)
-        acceleration = _smooth(drawn['velocity'], window, 1) / period
-    else:
-        velocity = _smooth(drawn['position'], window, 1) / period
-        acceleration = _smooth(drawn['position'], window, 2) / period**2
-    return velocity, acceleration
+    name, first = ('position', 1) if 'position' in drawn else ('velocity', 0)
+    return (_smooth(drawn[name], window, first) / period**first,
+            _smooth(drawn[name], window, first + 1) / period**(first + 1))
 
 
 def _force(drawn: Mapping[str, Numbers], found: Identification, velocity: Numbers, acceleration: Numbers, window: int,

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The motions of a slider between two rests, found in its measured position: when each begins and ends, and where.
+"""Motions and rests of a slider, found in its measured position: when each motion begins and ends, and where.
 
 The velocity is the slope of parabolas through the readings; their length is the least at which the noise of the slope
 is small beside the highest speed.  A motion begins where the slope, on a line through its rise, leaves zero, and ends

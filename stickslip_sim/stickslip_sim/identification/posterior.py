@@ -17,12 +17,13 @@ import numpy as np
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError
-from ..scene import Scene, scene_from_values
+from ..scene import Scene
 from ..study.distribution import LAWS, Distribution
+from ..study.points import scene_at
 from ..study.study import MOST_VARIATIONS
 from ..study.uncertainty import LEAST_KEPT
-from ..study.variation import changes_at, parameter_of
-from .identified import FOUND, NOT_IDENTIFIABLE, VOID, Combination, Estimate, Identification
+from ..study.variation import parameter_of
+from .identified import FOUND, NOT_IDENTIFIABLE, VOID, Combination, Estimate, Identification, moved
 from .identified_scene import OF_SENSORS, rounded_scene
 
 # Numbers that a run knows only together, as distributions: each by itself is wide, and all go up and down as one.
@@ -125,7 +126,7 @@ def _corners_are_scenes(scene: Scene, estimates: Sequence[Estimate], entries: Se
     names = [one.name for one in estimates]
     try:
         for corner in itertools.product(*((entry.low, entry.high) for entry in entries)):
-            scene_from_values({**scene.values, **changes_at(scene.values, names, np.array(corner))})
+            scene_at(scene.values, names, np.array(corner))
     except InputError:
         return False
     return True
@@ -137,13 +138,9 @@ def _entry(one: Estimate, tails: float) -> _Entry:
     spread = _spread(one)
     if one.kind not in (FOUND, VOID):
         return _one_sided(one, spread)
-    if one.logarithmic:
-        law, numbers = 'lognormal', (one.value, math.exp(spread))
-        low, high = one.value * math.exp(-tails * spread), one.value * math.exp(tails * spread)
-    else:
-        law, numbers = 'normal', (one.value, spread)
-        low, high = one.value - tails * spread, one.value + tails * spread
-    low, high = _allowed(one.name, low, high)
+    law, number = ('lognormal', math.exp(spread)) if one.logarithmic else ('normal', spread)
+    numbers = one.value, number
+    low, high = _allowed(one.name, moved(one, -tails * spread), moved(one, tails * spread))
     if Distribution(one.name, law, numbers, low, high).kept < LEAST_KEPT:
         return _one_sided(one, spread)
     words = ', '.join(f'{name}: {number!r}' for name, number in zip(LAWS[law].numbers, numbers, strict=True))
@@ -153,8 +150,7 @@ def _entry(one: Estimate, tails: float) -> _Entry:
 def _one_sided(one: Estimate, spread: float) -> _Entry:
     """Return what falls from the end of a range inwards, over two standard deviations."""
     inward = 1.0 if one.value - one.low <= one.high - one.value else -1.0
-    far = one.value * math.exp(2.0 * inward * spread) if one.logarithmic else one.value + 2.0 * inward * spread
-    low, high = sorted((one.value, min(max(far, one.low), one.high)))
+    low, high = sorted((one.value, min(max(moved(one, 2.0 * inward * spread), one.low), one.high)))
     return _Entry(f'distribution: triangular, low: {low!r}, mode: {one.value!r}, high: {high!r}', low, high)
 
 

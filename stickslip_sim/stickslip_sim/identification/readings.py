@@ -126,7 +126,7 @@ _RATES = 10.0, 2e5    # Hz
 class Channel:
     """A measured output (n,) in `unit`: `resolution` is the standard deviation of its noise, `quantum` of its steps.
 
-    `weights` (n,) say how much each reading counts (`readings`).
+    `weights` (n,) say how much each reading counts (`weights_of`).
     """
 
     name: str

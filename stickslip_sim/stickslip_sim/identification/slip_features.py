@@ -114,8 +114,7 @@ def measured_slips(motions: Sequence[MeasuredMotion], measurement: SensorReading
 
 def simulated_slip(model: AxisModel, dynamics: Dynamics, values: Numbers, measured: MeasuredSlip) -> SlipFigures | None:
     """Return the first slip, of some length, that the model does from the same rest on; None where it does none."""
-    before = measured.before
-    initial = dynamics.initial if before is None else model.state_after(before, dynamics, values)
+    initial = model.state_after(measured.before, dynamics, values)
     length = measured.motion.end - measured.rest_begin
     least = _PART * abs(measured.slip.way)
     for longer in _LONGER:
@@ -213,7 +212,7 @@ def shown_break_away(model: AxisModel, dynamics: Dynamics, values: Numbers, meas
 
     Its samples go through the filter of the measured ones.  NaN where the model does no such slip.
     """
-    initial = dynamics.initial if measured.before is None else model.state_after(measured.before, dynamics, values)
+    initial = model.state_after(measured.before, dynamics, values)
     length = measured.motion.end - measured.rest_begin
     motion = model.motion(dynamics, measured.rest_begin, initial, _LONGER[-1] * length)
     ends = None if motion is None else _ends(motion.events, _PART * abs(measured.slip.way))

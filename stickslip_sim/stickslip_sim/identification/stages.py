@@ -16,7 +16,7 @@ import numpy as np
 from ..core.arrays import Numbers
 from .certainty import certainty_of
 from .fit_problem import FitProblem, Stretches
-from .least_squares import STEP, Solution, minimise, steps_over_jumps
+from .least_squares import STEP, Solution, minimise, square_cost, steps_over_jumps
 from .motions import MeasuredMotion
 from .residual_tests import is_rejected
 from .starts import N_STARTS, ROBUST
@@ -151,10 +151,9 @@ def _ahead(problem: FitProblem, start: Numbers) -> Numbers | None:
 
 
 def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
-    whole = problem.stretches()
-    residuals, steps = partial(problem.of_stretches, stretches=whole), problem.steps
+    residuals, steps, measured = problem.of_run(), problem.steps, problem.measurement
     search = partial(minimise, residuals, region=problem.region, most=_MOST_STEPS, tolerance=1e-3,
-                     far=max(_NEAR, *_lost_from(problem)) * len(whole.rows) * len(whole.targets))
+                     far=max(_NEAR, *_lost_from(problem)) * len(measured.times) * len(measured.channels))
     found = search(start, step=steps)
     while problem.model.is_pushed:
         before, steps = steps, steps_over_jumps(residuals, found.point, problem.region, steps)
@@ -233,17 +232,16 @@ def _beyond_noise(problem: FitProblem, point: Numbers) -> Numbers | None:
     The sum of squares over such a one has steps, on which a fit comes to rest: its whole range is tried, and then what
     is about the best.
     """
-    residuals = partial(problem.of_stretches, stretches=problem.stretches())
-    best, left = point, residuals(point)
-    cost = float(left @ left) if np.isfinite(left[0]) else np.inf
+    residuals, best = problem.of_run(), point
+    cost = square_cost(residuals(point))
     for k in np.flatnonzero(problem.steps > STEP):
         low, high = problem.region.low[k], problem.region.high[k]
         for _ in range(2):
             for number in np.linspace(low, high, _TRIED):
                 trial = problem.region.holding(int(k), float(number)).inside(best)
-                left = residuals(trial)
-                if np.isfinite(left[0]) and float(left @ left) < cost:
-                    best, cost = trial, float(left @ left)
+                there = square_cost(residuals(trial))
+                if there < cost:
+                    best, cost = trial, there
             step = (high - low) / (_TRIED - 1)
             low, high = max(best[k] - step, low), min(best[k] + step, high)
     return None if best is point else best
@@ -254,7 +252,7 @@ def _beside(problem: FitProblem, found: Solution) -> Numbers | None:
 
     Where single break-aways hold a number, its neighbours seem worse until the others have followed.
     """
-    residuals, best = partial(problem.of_stretches, stretches=problem.stretches()), found
+    residuals, best = problem.of_run(), found
     for k in np.flatnonzero(problem.steps > STEP):
         for share in (*_BESIDE, *(-share for share in _BESIDE)):
             number = found.point[k] + share * (1.0 if problem.parameters[k].logarithmic else problem.widths[k])

@@ -6,7 +6,7 @@ What the readings say by themselves is taken from them first: spring and damper 
 from the break-aways.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -15,7 +15,7 @@ from ..core.arrays import Numbers
 from .direct import friction_at_break_aways, static_residuals
 from .fit_problem import FitProblem
 from .free_parameters import Region
-from .least_squares import Solution, minimise
+from .least_squares import Solution, minimise, robust_cost
 from .slip_features import MeasuredSlip
 
 N_STARTS, N_WHOLE = 8, 2   # fitted of the trial points, the best by figures of slips and by the whole run
@@ -49,9 +49,9 @@ def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     is_near = first.cost < _NEAR * len(chosen)
     if is_near:
         yield first.point
-    trials = _trials(problem, _holding(problem, places, begin), seed)
+    trials = _trials(problem, problem.region.holding(places, begin[places]), seed)
     few = _spread_slips(problem, _TRIAL_SLIPS)
-    costs = [_cost(problem.of_slips(trial, few)) for trial in trials]
+    costs = [robust_cost(problem.of_slips(trial, few)) for trial in trials]
     found = [first, *(_coarse(problem, trials[k], chosen) for k in np.argsort(costs)[:N_STARTS])]
     found.sort(key=lambda solution: solution.cost)
     points = [*(solution.point for solution in found), *_nearest(problem, trials)]
@@ -81,16 +81,8 @@ def _shares(problem: FitProblem, seed: int) -> Numbers:
 
 def _nearest(problem: FitProblem, trials: Sequence[Numbers]) -> list[Numbers]:
     """Return the few trial points from which the whole run is nearest."""
-    whole = partial(problem.of_stretches, stretches=problem.stretches())
-    return sorted(trials, key=lambda trial: _cost(whole(trial)))[:N_WHOLE]
-
-
-def _holding(problem: FitProblem, places: Iterable[int], point: Numbers) -> Region:
-    """Return the region with the numbers of a point held at places."""
-    region = problem.region
-    for k in places:
-        region = region.holding(k, point[k])
-    return region
+    whole = problem.of_run()
+    return sorted(trials, key=lambda trial: robust_cost(whole(trial)))[:N_WHOLE]
 
 
 def _spread_slips(problem: FitProblem, most: int) -> list[MeasuredSlip]:
@@ -113,7 +105,8 @@ def _direct(problem: FitProblem) -> tuple[Numbers, list[int]]:
         return np.concatenate([static_residuals(problem.model, measured, problem.values(trial)),
                                problem.beforehand(trial)])
 
-    region = _holding(problem, set(range(len(point))) - set(places), point)   # what is known better must not go back
+    others = [k for k in range(len(point)) if k not in places]   # what is known better must not go back
+    region = problem.region.holding(others, point[others])
     return minimise(residuals, point, region, most=20, tolerance=1e-2, robust=ROBUST).point, places
 
 
@@ -126,16 +119,12 @@ def _coarse(problem: FitProblem, start: Numbers, slips: Sequence[MeasuredSlip]) 
     if not slips:
         return found
     for kept in _KEPT:
-        costs = np.array([_cost(problem.of_slips(found.point, [slip])) for slip in slips])
+        costs = np.array([robust_cost(problem.of_slips(found.point, [slip])) for slip in slips])
         limit = max(float(np.quantile(costs, kept)), _FAR_OFF * float(np.median(costs)) if kept == _KEPT[-1] else 0.0)
         near = [slip for slip, cost in zip(slips, costs) if cost <= limit]
         found = minimise(partial(problem.of_slips, slips=near), found.point, problem.region, most=20,
                          tolerance=1e-2, share=1e-4, robust=ROBUST, step=_COARSE_STEP, steepest=_STEEPEST)
-    return found._replace(cost=_cost(problem.of_slips(found.point, slips)))
-
-
-def _cost(residuals: Numbers) -> float:
-    return float(np.sum(np.sqrt(1.0 + residuals**2) - 1.0)) if np.isfinite(residuals).all() else np.inf
+    return found._replace(cost=robust_cost(problem.of_slips(found.point, slips)))
 
 
 def _distinct(points: list[Numbers], problem: FitProblem) -> list[Numbers]:

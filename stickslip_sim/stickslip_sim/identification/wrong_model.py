@@ -1,6 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A model that is not that of the axis: single slips fitted, each from a measured arrest.
+"""The best numbers of a model that is not that of the axis: by single slips, or by the position of the whole run.
+
+Single slips are fitted each from a measured arrest.
 
 In the whole run its slips come ever more too late or too early, and the least sum of squares means nothing.  It still
 can have the right rests and break-aways, and these weigh most here: they are what such a model is used for.  Where the
@@ -15,7 +17,7 @@ import numpy as np
 from ..core.arrays import Numbers
 from .certainty import certainty_of
 from .fit_problem import FitProblem
-from .least_squares import minimise, slopes_of
+from .least_squares import minimise, robust_cost, slopes_of, square_cost
 from .residual_tests import inflation_of
 from .stages import Ended
 
@@ -39,29 +41,31 @@ def best_of_slips(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
     def residuals(point: Numbers) -> Numbers:
         return problem.of_slips(problem.tied(point), slips, telling=True)
 
+    def cost(point: Numbers) -> float:
+        return robust_cost(residuals(point), _ROBUST)
+
     ended = [point for end in ends for point in (end.start, end.solution.point)]
     direct = [problem.region.inside(problem.with_direct(point)) for point in (*ended, problem.start)]
-    points = [point for of in (ended, direct)
-              for point in sorted(of, key=lambda point: _cost(residuals(point)))[:_POINTS]]
-    nearest = min((_nearest(residuals, point, problem) for point in points), key=lambda point: _cost(residuals(point)))
+    points = [point for of in (ended, direct) for point in sorted(of, key=cost)[:_POINTS]]
+    nearest = min((_nearest(cost, point, problem) for point in points), key=cost)
     for _ in range(_AGAIN):
-        nearest = _nearest(residuals, nearest, problem)
+        nearest = _nearest(cost, nearest, problem)
     best = minimise(residuals, nearest, problem.region, most=10, tolerance=1e-3, share=1e-4, robust=_ROBUST,
                     step=_STEP, steepest=_STEEPEST)
     point = problem.tied(best.point)
-    whole = problem.of_stretches(point, problem.stretches())
-    if not np.isfinite(whole).all():
+    whole = square_cost(problem.of_run()(point))
+    if not np.isfinite(whole):
         return [*ends]
     untied = partial(problem.of_slips, slips=slips, telling=True)
     figures = untied(point)
     slopes = slopes_of(untied, point, figures, problem.region, _STEP)
     slopes[np.abs(slopes) > _STEEPEST] = 0.0
-    best = best._replace(point=point, cost=float(whole @ whole), information=slopes.T @ slopes)
+    best = best._replace(point=point, cost=whole, information=slopes.T @ slopes)
     of_slips = float(figures @ figures) / len(figures)
     return [Ended(ends[0].start, best, True, True, ends[0].tolerance, of_slips), *ends]
 
 
-def _nearest(residuals: Callable[[Numbers], Numbers], start: Numbers, problem: FitProblem) -> Numbers:
+def _nearest(cost: Callable[[Numbers], float], start: Numbers, problem: FitProblem) -> Numbers:
     """Return where the figures are best, by the simplex of Nelder and Mead.
 
     A slip that is another one from a point on, and a contact that rings, make steps on which slopes mean nothing.
@@ -69,14 +73,12 @@ def _nearest(residuals: Callable[[Numbers], Numbers], start: Numbers, problem: F
     from scipy.optimize import Bounds, minimize  # takes a while, and only a wrong model needs it
 
     region = problem.region
-    found = minimize(lambda point: _cost(residuals(region.inside(point))), start, method='Nelder-Mead',
+    found = minimize(lambda point: cost(region.inside(point)), start, method='Nelder-Mead',
                      bounds=Bounds(region.low, region.high),
                      options={'maxfev': _TRIALS * len(start), 'xatol': _NEAR, 'fatol': _NEAR, 'adaptive': True})
     return region.inside(np.asarray(found.x))
 
 
-def _cost(residuals: Numbers) -> float:
-    return float(np.sum(np.sqrt(1.0 + (residuals / _ROBUST)**2) - 1.0)) if np.isfinite(residuals).all() else np.inf
 
 
 # An axis that is not quite the model, and driven by a measured force: its position over the whole run.

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import special
 
 from ...core.errors import InputError
-from .law_fit import MISSED, Fit, enough_points
+from .law_fit import MISSED, SPARE, Fit, enough_points
 from .measured_curve import FrictionCurve
 from .smooth_fit import SMOOTH_FORMS, fit_smooth
 from .table_fit import fit_table
@@ -40,6 +40,16 @@ class Fits(NamedTuple):
         """The names of the laws with a lower criterion than the best, which miss the points."""
         best, *others = self.by_rank
         return [fit.name for fit in others if fit.criterion < best.criterion]
+
+    def of(self, law: str) -> Fit:
+        """Return the fit of a law by its name; raises InputError where the points are too few for it."""
+        if law in self.left_out:
+            curve = self.by_rank[0].curve
+            most = min(len(curve.speeds) - SPARE, len(np.unique(curve.speeds)))
+            raise InputError('--law', law, f'one with at most {most} parameters for these points: AICc wants {SPARE} '
+                             'points more than that, and as many speeds',
+                             'measure more of them, or take --law points for the points themselves')
+        return next(fit for fit in self.by_rank if fit.name == law)
 
 
 def fit_laws(curve: FrictionCurve) -> Fits:

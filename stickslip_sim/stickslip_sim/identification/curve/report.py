@@ -1,23 +1,105 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What `stickslip friction` prints: the curve as it was read, the laws by rank, and the chosen one with its doubts."""
+"""What `stickslip friction` says of a curve: how it was read, the laws by rank, the chosen one with its doubts.
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+It also writes the scene with that law, and draws it.
+"""
+
+import shlex
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
 
 from ...report.quantity import counted
+from ...scene import Scene
+from ...scene.schema import BY_NAME
+from .best_law import Fits, fit_laws, sides, sign_changes
+from .law_fit import MISSED, SPARE, Fit
+from .law_in_scene import origin_of, scene_with_friction, scene_with_friction_backwards, short_text
+from .measured_curve import FrictionCurve, Units
+from .table_fit import points_table
 
-if TYPE_CHECKING:
-    from .best_law import Fits
-    from .law_fit import Fit
-    from .measured_curve import FrictionCurve, Units
-
+BEST, POINTS = 'best', 'points'
 _PATTERN = 0.05   # a chance below it is called a pattern
 _DIFFER = 3.0     # standard errors
 _ENOUGH = 12      # points for a law of four parameters
 
 
-def curve_lines(curve: str, measured: 'FrictionCurve', units: 'Units') -> list[str]:
+class FittedCurve(NamedTuple):
+    """The laws that were fitted to the curve of a file, and the one that is `chosen`, or the points themselves.
+
+    `kinetic` is the section friction.kinetic of a scene.
+    """
+
+    path: str
+    measured: FrictionCurve
+    units: Units
+    fits: Fits
+    chosen: Fit
+    kinetic: Mapping[str, object]
+    is_points: bool
+
+    def lines(self) -> list[str]:
+        """Return what the tool prints."""
+        chosen = _points_lines(self.kinetic, self.measured) if self.is_points else _fitted_law_lines(self.chosen)
+        return [*_curve_lines(self.path, self.measured, self.units), '', *_fit_lines(self.fits), '', *chosen]
+
+    def scene(self, base: Scene | None, changes: Mapping[str, object], backward: bool) -> Scene:
+        """Return the scene with the law, of motion `backward` or of both directions; raises InputError."""
+        origin = origin_of(self.measured, Path(self.path).stem, self.units.normal_force)
+        if backward and base is not None:
+            return scene_with_friction_backwards(self.kinetic, base, changes, origin)
+        return scene_with_friction(self.kinetic, base, changes, origin)
+
+    def text(self, made: Scene, base: str | None) -> str:
+        """Return the scene as a file, with a line that says from where its law is, and how far that is from the points.
+
+        `base` is the path of the scene that it was put into.
+        """
+        chosen = self.chosen
+        missed = f', {100.0 * chosen.miss:.0f} % of the range of the points' if chosen.miss > MISSED else ''
+        fitted = f'the law {chosen.name}, rms of the residuals {chosen.rms:.2g}{missed}'
+        what = 'its points' if self.is_points else fitted
+        whose = "the paper's axis" if base is None else f'the axis of {Path(base).name}'
+        name = ' '.join(Path(self.path).name.split())
+        return f'# Kinetic friction from {name}: {what}; {whose}.\n' + short_text(made)
+
+    def next_lines(self, out: str, made: Scene, base: str | None, changes: Sequence[str]) -> list[str]:
+        """Return what no measurement gave and the file `out` has all the same, and the command that goes on."""
+        feed, load = (made.values.get(name) for name in ('drive.velocity', 'axis.normal_force'))
+        lines = []
+        if base is None and not any(change.startswith('drive.') for change in changes):
+            lines.append(f"{'its axis':22} the paper's under {load:g} N, the drive at {feed:g} m/s, in the middle of "
+                         'the measured speeds: --scene and --set give yours')
+        go_on = f'stickslip critical {shlex.quote(out)} --of drive.velocity'
+        return [*lines, f'{"next":22} {go_on}' + ('' if feed else ' --between LOW:HIGH, as its drive.velocity is 0')]
+
+    def draw(self, path: Path) -> None:
+        """Draw points, laws and residuals."""
+        from ...plots.friction_fits import FittedLine, MeasuredPoints, plot_friction_fits, plot_speeds
+
+        chosen = self.chosen
+        points = MeasuredPoints(*chosen.curve[:3])
+        speeds = plot_speeds(points)
+        lines = []
+        for fit in [chosen, *(fit for fit in self.fits.by_rank if fit is not chosen)]:
+            band = fit.band(speeds) if fit is chosen else np.array([])
+            lines.append(FittedLine(f'{fit.name} (AICc {fit.criterion:.1f})', fit.at(speeds),
+                                    band if np.isfinite(band).all() else np.array([]), fit.at(points.speeds)))
+        plot_friction_fits(points, lines, Path(self.path).name, path)
+
+
+def fitted_curve(path: str, measured: FrictionCurve, units: Units, law: str) -> FittedCurve:
+    """Return the fits to a curve, of which a `law`, the BEST, or its POINTS are chosen; raises InputError."""
+    fits = fit_laws(measured)
+    chosen = fits.by_rank[0] if law in (BEST, POINTS) else fits.of(law)
+    kinetic = points_table(measured) if law == POINTS else chosen.scene
+    return FittedCurve(path, measured, units, fits, chosen, kinetic, law == POINTS)
+
+
+def _curve_lines(curve: str, measured: FrictionCurve, units: Units) -> list[str]:
     """Return what was read, in SI, so that a wrong unit is seen."""
     speeds, coefficients = measured.speeds, measured.coefficients
     forward = int(measured.forward.sum())
@@ -31,10 +113,8 @@ def curve_lines(curve: str, measured: 'FrictionCurve', units: 'Units') -> list[s
     return lines + ([f'{"not read":22} {counted(measured.unread, "more column")}'] if measured.unread else [])
 
 
-def fit_lines(fits: 'Fits') -> list[str]:
+def _fit_lines(fits: Fits) -> list[str]:
     """Return a table of the laws by rank, and what the rank means."""
-    from .law_fit import MISSED, SPARE
-
     best = fits.by_rank[0]
     lines = [f'{"law":12}{"parameters":>11}{"rms residual":>15}{"largest":>11}{"AICc":>10}{"above best":>12}']
     for fit in fits.by_rank:
@@ -55,11 +135,8 @@ def fit_lines(fits: 'Fits') -> list[str]:
     return lines
 
 
-def fitted_law_lines(fit: 'Fit') -> list[str]:
+def _fitted_law_lines(fit: Fit) -> list[str]:
     """Return the parameters of a law with their intervals, and what the residuals say."""
-    from ...scene.schema import BY_NAME
-    from .best_law import sides, sign_changes
-
     lines = [f'{fit.name:22} {"value":>12}   95 % interval']
     intervals = fit.intervals()
     for name, value in _values(fit).items():
@@ -81,7 +158,7 @@ def fitted_law_lines(fit: 'Fit') -> list[str]:
     return lines + _rest_lines(fit) + _miss_lines(fit)
 
 
-def points_lines(scene: Mapping[str, object], measured: 'FrictionCurve') -> list[str]:
+def _points_lines(scene: Mapping[str, object], measured: FrictionCurve) -> list[str]:
     """Return what `--law points` writes."""
     speeds, coefficients = scene['velocities'], scene['coefficients']
     assert isinstance(speeds, tuple)
@@ -93,7 +170,7 @@ def points_lines(scene: Mapping[str, object], measured: 'FrictionCurve') -> list
                                               f'{slowest:g} m/s: not measured'])
 
 
-def _rest_lines(fit: 'Fit') -> list[str]:
+def _rest_lines(fit: Fit) -> list[str]:
     """Return a line that says from where a curve without a point at rest was extrapolated."""
     slowest = float(fit.curve.speeds.min())
     if slowest == 0.0:
@@ -102,18 +179,15 @@ def _rest_lines(fit: 'Fit') -> list[str]:
             f'measured coefficient {fit.curve.coefficients.max():.4g}']
 
 
-def _miss_lines(fit: 'Fit') -> list[str]:
+def _miss_lines(fit: Fit) -> list[str]:
     """Return a warning when a law misses the points, unless enough of them show that it is noise."""
-    from .best_law import sign_changes
-    from .law_fit import MISSED
-
     if fit.miss <= MISSED or (len(fit.curve.speeds) >= _ENOUGH and sign_changes(fit).chance >= _PATTERN):
         return []
     return [f'WARNING: {fit.name} misses the points by {100.0 * fit.miss:.0f} % of their range (rms): they scatter as '
             'much, or it has not their shape; --law points writes the points themselves']
 
 
-def _values(fit: 'Fit') -> dict[str, float]:
+def _values(fit: Fit) -> dict[str, float]:
     """Return the numbers of a law by name, the breakpoints of a table among them."""
     values: dict[str, float] = {}
     for name, value in fit.scene.items():
@@ -124,7 +198,7 @@ def _values(fit: 'Fit') -> dict[str, float]:
     return values
 
 
-def _interval(name: str, fit: 'Fit', intervals: dict[str, tuple[float, float] | None]) -> str:
+def _interval(name: str, fit: Fit, intervals: dict[str, tuple[float, float] | None]) -> str:
     if name in ('initial', 'coefficients[0]') and fit.extrapolates:
         return f'none: extrapolated, no point below {fit.curve.speeds.min():g} m/s'
     if name in fit.held:

@@ -7,7 +7,6 @@ times the highest (and the exponent through its range), with the best other valu
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -40,6 +39,11 @@ class SmoothForm(NamedTuple):
     falling: Falling
     exponents: tuple[float, ...]
     free: bool = False
+
+    @property
+    def logarithms(self) -> tuple[str, ...]:
+        """The parameters of which `coefficients` takes the logarithm."""
+        return 'stribeck_velocity', 'exponent'
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -81,16 +85,6 @@ _BEYOND = 10.0     # times the speeds of the curve: there a scale may lie
 _AT_END = 1e-6     # of a range
 
 
-@dataclass(frozen=True)
-class _SmoothLaw:
-    form: SmoothForm
-    logarithms = ('stribeck_velocity', 'exponent')
-
-    def coefficients(self, parameters: Numbers, speeds: Numbers) -> Numbers:
-        """Return mu at the speeds."""
-        return self.form.coefficients(parameters, speeds)
-
-
 def fit_smooth(form: SmoothForm, curve: FrictionCurve) -> Fit:
     """Return the best fit of a law to a curve that has more points than parameters, not all at rest."""
     above = curve.speeds[curve.speeds > 0.0]
@@ -103,7 +97,7 @@ def fit_smooth(form: SmoothForm, curve: FrictionCurve) -> Fit:
     parameters = _settled(form, curve, found.x, (low, high))
     held = tuple(name for name, value, a, b in zip(form.names, parameters, low, high)
                  if min(value - a, b - value) <= _AT_END * min(1.0, b - a))
-    return Fit(form.name, _SmoothLaw(form), form.names, parameters, held, len(form.names), _scene(form, parameters),
+    return Fit(form.name, form, form.names, parameters, held, len(form.names), _scene(form, parameters),
                curve)
 
 

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
-from benchmarks.identify.axes import SyntheticAxis, axes
-from benchmarks.identify.machines import DURATION
+from benchmarks.identify.axes import DURATION, SyntheticAxis, axes
 from benchmarks.identify.measuring import measure
+from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.types import EventKind, Mode
+from stickslip_sim.identification.measured_inputs import travelled, velocity_within
 from stickslip_sim.identification.motions import motions_of, track_of
 from stickslip_sim.identification.readings import readings_of
 
@@ -46,3 +47,29 @@ def test_the_motions_of_a_run_are_its_slips(tmp_path: Path, index: int) -> None:
         if not others:
             assert motion.end == pytest.approx(end, abs=LATE)
             assert motion.stop - motion.start == pytest.approx(way, rel=0.02, abs=1e-5)   # it begins slowly
+
+
+# Measured inputs: the way of a drive within the resolution of its encoder.
+
+MICROMETRE = 1e-6
+TIMES: Numbers = np.arange(4000, dtype=np.float64) * 1e-3
+
+
+def test_an_even_feed_that_was_counted_is_even() -> None:
+    profile = velocity_within(TIMES, np.round(TIMES * 0.00263 / MICROMETRE) * MICROMETRE, 0.5 * MICROMETRE)
+    assert len(profile.starts) <= 5
+    assert profile.values_at(TIMES[:3900]) == pytest.approx(np.full(3900, 0.00263), rel=1e-4)
+
+
+def test_the_way_of_a_drive_turns_where_it_must_and_is_near_the_true_one() -> None:
+    """Two feeds, a rest, a sine; differences of the readings are off by 1e-3 m/s."""
+    turning = np.where(TIMES > 2.5, 2e-4 * np.sin(3.0 * (TIMES - 2.5)), 0.0)
+    true = np.interp(TIMES, [0.0, 1.0, 1.5], [0.0, 0.002, 0.0025]) + turning
+    places = np.round(true / MICROMETRE) * MICROMETRE
+    profile = velocity_within(TIMES, places, 0.5 * MICROMETRE)
+    off = travelled(profile, TIMES) - true
+    assert np.abs(off - off[0]).max() < 0.6 * MICROMETRE
+    assert len(profile.starts) < 150
+    velocity = profile.values_at(TIMES)
+    for first, last, feed in ((50, 950, 0.002), (1050, 1450, 0.001), (1550, 2450, 0.0)):
+        assert np.abs(velocity[first:last] - feed).max() < 2e-6

@@ -46,8 +46,8 @@ from stickslip_sim.scene.load import parse_scene
 from stickslip_sim.scene.ros_yaml import read_yaml
 from stickslip_sim.study import Saltelli, Study
 from stickslip_sim.study.uncertainty import uncertain_of, uncertainty_of
-from tests.support.measured_axes import FREE, START, free_file, readings, start_scene
-from tests.support.measured_axes import VALUES as TRUTH
+from tests.support.measured_runs import FREE, START, free_file, readings, start_scene
+from tests.support.measured_runs import VALUES as TRUTH
 
 STATIC = 'friction.static.initial'
 
@@ -306,7 +306,7 @@ def test_of_many_misfits_three_are_listed_and_all_are_in_the_fold(run: MeasuredR
 @pytest.fixture(scope='module')
 def slip_by_slip(tmp_path_factory: pytest.TempPathFactory) -> tuple[MeasuredRun, Identification]:
     """Return a run of another mass than that of the scene: single slips are fitted."""
-    other = readings({**TRUTH, 'axis.mass': 50.0}).as_run(tmp_path_factory.mktemp('other') / 'measured')
+    other = readings({**TRUTH, 'axis.mass': 50.0}, 3.0).as_run(tmp_path_factory.mktemp('other') / 'measured')
     return other, identify(other, start_scene(), free_file(tmp_path_factory.mktemp('free') / 'free.yaml'))
 
 
