@@ -16,7 +16,7 @@ import zstandard
 from mcap.opcode import Opcode
 from mcap.writer import CompressionType
 
-from stickslip_sim.bags import mcap_records
+from stickslip_sim.bags import bag_files
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import RecordedMessage, open_bag, write_bag
 from stickslip_sim.recording.playback import Recording
@@ -133,7 +133,7 @@ def test_a_short_bag_is_read_as_its_chunks_say(how: Callable[[Path], list[Record
 
 def test_no_chunk_is_unpacked_to_open_a_finished_bag(fig8_bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     expected = open_bag(fig8_bag).counts
-    monkeypatch.setattr(mcap_records, '_decompressed', None)
+    monkeypatch.setattr(bag_files, 'contents', None)
     assert open_bag(fig8_bag).counts == expected
 
 
