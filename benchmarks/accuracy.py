@@ -10,7 +10,7 @@ import pathlib
 import shutil
 import sys
 
-from stickslip_sim.bench.race_report import markdown
+from stickslip_sim.bench.report import markdown
 
 from .page import replace_generated
 

@@ -19,8 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stickslip_sim.bench.peers import scipy_ivp
-from stickslip_sim.bench.peers.peer import Setting
-from stickslip_sim.bench.problem import Outcome, Problem
+from stickslip_sim.bench.problem import Outcome, Problem, Setting
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import Scene

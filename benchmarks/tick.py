@@ -21,7 +21,7 @@ from rclpy.node import Node
 
 from stickslip_msgs.msg import FrictionForce, SliderState
 from stickslip_sim.bench.cases import make_case
-from stickslip_sim.bench.own_solvers import sinusoids_for, state_for
+from stickslip_sim.bench.contestants import sinusoids_for, state_for
 from stickslip_sim.bench.ratios import at_most
 from stickslip_sim.solvers import exact
 

@@ -7,10 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+from ..bench.contestants import own_solver
 from ..bench.measure import Cost, measure
-from ..bench.own_solvers import own_solver
-from ..bench.peers.peer import NO_SETTING
-from ..bench.problem import Outcome, Problem
+from ..bench.problem import NO_SETTING, Outcome, Problem
 from ..core.errors import InputError, SolverError
 from ..core.types import Event, Instant, Sample
 from ..figures.distance import Distance, RunFigures, distance_between, run_figures

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measurements in processes of their own: plain Python, and starts of Python until an axis slips."""
+"""Measurements beside the race: plain Python and starts of Python, in processes of their own; many axes at once."""
 
 import json
 import os
@@ -10,12 +10,19 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
 
+import numpy as np
+
+from ..axis import Axis
+from ..core.input_profile import constant
+from ..runs.batch import run_batch
 from .cases import make_case
-from .measure import measure
-from .own_solvers import exact_solver
+from .contestants import exact_solver
+from .measure import cost_sample, measure
 from .peers import scipy_ivp
-from .peers.peer import NO_SETTING, Setting
+from .problem import NO_SETTING, Problem, Setting
 from .ratios import Ratio, at_least, at_most
 
 _CASES, _DURATION, _ROUNDS = 'ABC', 20.0, 5
@@ -32,6 +39,11 @@ simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force)
 simulator.advance(Instant(0.0, 0.8))
 sample = simulator.sample()
 '''
+_AXES, _BATCH_DURATION = 10_000, 10.0   # s
+_FEED = 0.001                    # m/s, of A and B
+_CORES = 2
+_BATCH_MARK, _BATCH_AIM = 1e6, 4e6          # axis-seconds a second
+_SEED, _WALLS, _FEW = 20261121, 5, 6
 _PLAIN = 'from stickslip_sim.bench.outside import print_plain_ratios; print_plain_ratios()'
 
 
@@ -78,3 +90,42 @@ def _run(program: str, **environment: str) -> str:
     path = os.pathsep.join(filter(None, sys.path))
     return subprocess.run([sys.executable, '-c', program], env={**os.environ, 'PYTHONPATH': path, **environment},
                           check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+def drawn(axis: Axis, count: int, seed: int = _SEED) -> dict[str, Any]:
+    """Return masses, stiffnesses and feeds drawn at random, each within a factor of 2 of the axis and 1 mm/s."""
+    random = np.random.default_rng(seed)
+    return {name: middle * 2.0 ** random.uniform(-1.0, 1.0, count) for name, middle in (
+        ('mass', axis.mass), ('drive_stiffness', axis.drive_stiffness), ('drive_velocity', _FEED))}
+
+
+def batch_ratios() -> Iterator[Ratio]:
+    """Yield the throughput of a batch of variants of A and of B; scipy runs the first few of the same axes."""
+    cores = min(_CORES, os.cpu_count() or 1)
+    for name in 'AB':
+        axis = make_case(name).axis
+        grid = drawn(axis, _AXES)
+        run_batch(axis, _BATCH_DURATION, threads=cores, **grid)
+        rate = _AXES * _BATCH_DURATION / statistics.median(_wall(axis, grid, cores) for _ in range(_WALLS))
+        yield at_least(f'axis-seconds a second, batch of {_AXES} on {cores} cores', name, rate, _BATCH_MARK, _BATCH_AIM)
+        if scipy_ivp.SCIPY_PEERS[0].missing is None:
+            rate = cores * _FEW * _BATCH_DURATION / sum(_by_scipy(axis, grid, k) for k in range(_FEW))
+            yield Ratio(f'the same by scipy DOP853, 1e-12, extrapolated from {_FEW} axes on one core', name, rate)
+
+
+def _wall(axis: Axis, grid: dict[str, Any], cores: int) -> float:
+    begin = time.monotonic()
+    run_batch(axis, _BATCH_DURATION, threads=cores, **grid)
+    return time.monotonic() - begin
+
+
+def _by_scipy(axis: Axis, grid: dict[str, Any], index: int) -> float:
+    """Return the cost of one axis of the grid by scipy, s of processor time."""
+    mass, stiffness, feed = (float(grid[name][index]) for name in ('mass', 'drive_stiffness', 'drive_velocity'))
+    case = make_case('A')
+    problem = Problem('one of many', '', replace(axis, mass=mass, drive_stiffness=stiffness), case.initial,
+                      constant(feed), constant(0.0), _BATCH_DURATION)
+    run = scipy_ivp.SCIPY_PEERS[0].prepare(problem, Setting(1e-12, 'tolerance'))
+    if index == 0:
+        run()
+    return cost_sample(run)

@@ -1,22 +1,50 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The race: every contestant and setting over every case, in one process; errors first, then interleaved cost."""
+"""The race: every contestant and setting over every case, in one process; errors first, then interleaved cost.
+
+What counts as an error are the events at which the slider starts or stops (break-away, stick, reverse), because every
+solver has them; the sub-modes of a slip are compared too, apart.  Events of one kind and direction are paired in order,
+so that the sum of their distances in time is least; a pair further apart than half the usual distance of such events is
+none.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 from ..core.errors import SolverError
-from ..core.types import Progress
+from ..core.types import Event, EventKind, Progress
+from ..figures.distance import CYCLE_EVENTS, pair, window
 from ..reference import simulate as simulate_reference
-from .accuracy import Errors, Truth, errors_of
 from .measure import Cost, cost_sample, measure
-from .peers.peer import Peer, Setting
-from .problem import Outcome, Problem
+from .problem import Outcome, Peer, Problem, Setting
 
 RACE_DIGITS = 30        # of the reference
 RACE_PATIENCE = 30.0    # s of processor time: a run that would take longer is marked as such, and not waited for
 _PARTS = (64, 8)   # of the duration that is run first, to foresee the cost of all of it
+_SUB_MODES = (EventKind.COAST, EventKind.ACCELERATE, EventKind.DECELERATE)
+
+
+class Errors(NamedTuple):
+    """Of one run against the reference; times in s, positions in m, the worst over the pairs."""
+
+    events: int
+    reference_events: int
+    missed: int
+    invented: int
+    time: float
+    position: float
+    end_position: float
+    sub_modes_missed: int
+    sub_modes_invented: int
+    sub_modes_time: float
+
+
+class Truth(NamedTuple):
+    """The result of the reference: events, and the position at the end, m."""
+
+    events: list[Event]
+    position: float
 
 
 class Row(NamedTuple):
@@ -99,3 +127,35 @@ def _foresee(peer: Peer, problem: Problem, setting: Setting) -> float:
 
 def _per_second(cost: Cost, duration: float) -> Cost:
     return Cost(cost.median / duration, cost.low / duration, cost.high / duration, cost.samples)
+
+
+class _Pairing(NamedTuple):
+    missed: int
+    invented: int
+    time: float
+    position: float
+
+
+def errors_of(outcome: Outcome, truth: Truth, duration: float) -> Errors:
+    """Compare a run of `duration` seconds with the reference."""
+    boundaries = _compare(outcome, truth, CYCLE_EVENTS, duration)
+    sub_modes = _compare(outcome, truth, _SUB_MODES, duration)
+    kinds = [int(kind) for kind in outcome.events[:, 1]]
+    return Errors(sum(kind in CYCLE_EVENTS for kind in kinds), sum(e.kind in CYCLE_EVENTS for e in truth.events),
+                  boundaries.missed, boundaries.invented, boundaries.time, boundaries.position,
+                  abs(outcome.position - truth.position), sub_modes.missed, sub_modes.invented, sub_modes.time)
+
+
+def _compare(outcome: Outcome, truth: Truth, kinds: Sequence[EventKind], duration: float) -> _Pairing:
+    missed = invented = 0
+    time = position = 0.0
+    for kind in kinds:
+        for direction in (-1, 1):
+            want = [(e.time, e.position) for e in truth.events if e.kind == kind and e.direction == direction]
+            got = [(row[0], row[3]) for row in outcome.events.tolist() if row[1] == kind and row[2] == direction]
+            pairs = pair(want, got, window(want, duration))
+            missed += len(want) - len(pairs)
+            invented += len(got) - len(pairs)
+            time = max([time, *(abs(a[0] - b[0]) for a, b in pairs)])
+            position = max([position, *(abs(a[1] - b[1]) for a, b in pairs)])
+    return _Pairing(missed, invented, time, position)

@@ -5,7 +5,7 @@
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from .peers.peer import Setting
+from .problem import Setting
 from .race import RACE_DIGITS, CaseResult, Row
 
 _FINEST = Setting(1e-12, 'tolerance')
@@ -17,11 +17,10 @@ _MARKS: tuple[tuple[str, Setting, str, float | None, float | None], ...] = (
     *(('heyoka', _TAYLOR, case, mark, aim) for case, mark, aim in (
         ('A', 25.0, 30.0), ('B', 25.0, 30.0), ('C', 18.0, 25.0), ('D', 30.0, 60.0))),
     *(('CVODE (Adams), as from C', _FINEST, case, None, None) for case in 'ABCD'),
-    *(('scikit-sundae CVODE (Adams)', _FINEST, case, None, None) for case in 'ABCD'),
     *(('DOP853 with events, numba', _FINEST, case, 10.0, 25.0) for case in 'ABC'),
     ('DOP853 with events, numba', _FINEST, 'D', 1.5, 5.0),
-    ('semi-implicit Euler, numba', _MILLISECOND, 'A', 5.0, 8.0),
-    *(('semi-implicit Euler, numba', _MILLISECOND, case, None, None) for case in 'BCD'),
+    ('fixed_step euler', _MILLISECOND, 'A', 5.0, 8.0),
+    *(('fixed_step euler', _MILLISECOND, case, None, None) for case in 'BCD'),
     *(('MuJoCo', _MILLISECOND, case, None, None) for case in 'ABCD'))
 _ERROR_MARK, _ERROR_AIM = 1e-12, 2e-14   # s, of event times
 

@@ -27,11 +27,10 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     folder = _made(out) if out is not None else None
     from ..bench.cases import case_names, make_case
     from ..bench.contestants import contestants
-    from ..bench.outside import outside_ratios
+    from ..bench.outside import batch_ratios, outside_ratios
     from ..bench.race import race
-    from ..bench.race_report import marks_table, race_as_json, text_table
     from ..bench.ratios import ratios
-    from ..bench.throughput import batch_ratios
+    from ..bench.report import marks_table, race_as_json, text_table
     from .progress import progress_bar
 
     names = (*chosen, *more) or (_QUICK_CASES if quick else tuple(case_names()))
@@ -63,7 +62,7 @@ def _made(path: str) -> Path:
 
 def _write(folder: Path, data: dict[str, Any]) -> None:
     from ..bench.cases import LETTERS
-    from ..bench.race_report import markdown
+    from ..bench.report import markdown
     from ..plots import SolverCurve, plot_trade
 
     write_text(str(folder / 'bench.json'), [json.dumps(data, indent=1, allow_nan=False) + '\n'])

@@ -7,13 +7,23 @@ little beyond the guard that ends it (an integrator looks there).  A guard is a 
 mode and whose fall through zero ends it.  Nothing here is taken from the exact engine: equations and rules are those of
 docs/model.md.
 
+numba compiles it when it is first called, and keeps it beside these sources.  The switch STICKSLIP_COMPILED is not for
+it: a rival is never held back.
+
 `p` is the array of `axis.pack`.  `m` is the state of the automaton at the last reset (below), `w` the sinusoids:
 frequency in Hz, phase in turns, amplitude in m/s, amplitude in N for each.  What the motion until the next reset
 depends on is taken together in a tuple `q`, which machine code keeps in registers.
 """
 
+import hashlib
+import importlib.util
 import math
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
 
+from ...axis import layout
 from ...axis.layout import (
     CONTACT_DAMPING,
     CONTACT_STIFFNESS,
@@ -24,17 +34,46 @@ from ...axis.layout import (
     SEGMENT_COUNT,
     SEGMENT_FIELDS,
     SEGMENT_SIZE,
-    STATIC_EXPONENT,
     STATIC_INITIAL,
-    STATIC_LAW,
     STATIC_LIMIT,
     STATIC_TAU,
     STIFFNESS,
     TABLE,
 )
-from .always_compiled import always_compiled
-from ...friction.static import CONSTANT, EXPONENTIAL, HYPERBOLIC, KATO
 from ...core.types import Mode
+
+_Function = TypeVar('_Function', bound=Callable[..., object])
+
+
+def _digest() -> str:
+    """Return a mark of these sources, and of those whose numbers they hold.
+
+    numba itself looks at the file of a function alone, and would go on with the places of a table laid out anew.
+    """
+    files = [*sorted(Path(__file__).parent.glob('*.py')), Path(layout.__file__)]
+    return hashlib.sha256(b''.join(file.read_bytes() for file in files)).hexdigest()[:16]
+
+
+os.environ['NUMBA_CACHE_DIR'] = str(Path(__file__).parent / '__pycache__' / _digest())
+try:
+    import numba
+    NUMBA_MISSING = None
+except ImportError:
+    NUMBA_MISSING = 'pip install numba'
+
+
+def missing(module: str, package: str) -> str | None:
+    """Return how to install what a rival needs; None when it is there."""
+    return NUMBA_MISSING if importlib.util.find_spec(module) else f'pip install {package}'
+
+
+def always_compiled(function: _Function) -> _Function:
+    """Compile a function; without numba it stays as it is, and its contestant does not race."""
+    if NUMBA_MISSING is not None:
+        return function
+    found: _Function = numba.njit(cache=True, error_model='numpy', _nrt=False)(function)
+    return found
+
 
 _MU, _PSI = SEGMENT_FIELDS.index('friction'), SEGMENT_FIELDS.index('psi')
 TIME, MODE, DIRECTION, SEGMENT, EXCESS = range(5)
@@ -48,8 +87,8 @@ Q_MODE, Q_DIRECTION, Q_MASS, Q_STIFFNESS, Q_DAMPING = range(5)
 Q_LOWER, Q_LOWER_SLOPE, Q_BAND, Q_BAND_SLOPE = range(5, 9)         # N mu_k and N e over the speed: N, N s/m
 Q_BREAKPOINT_BELOW, Q_BREAKPOINT_ABOVE = range(9, 11)                          # m/s
 Q_CONTACT_STIFFNESS, Q_CONTACT_DAMPING, Q_UNDEFLECTED = range(11, 14)   # both 0 in a rigid contact; x at δ = 0
-Q_NORMAL, Q_LAW, Q_INITIAL, Q_LIMIT, Q_TAU, Q_EXPONENT, Q_REST = range(14, 21)
-Q_TIME, Q_S, Q_V, Q_V_RATE, Q_F, Q_F_RATE = range(21, 27)
+Q_NORMAL, Q_INITIAL, Q_LIMIT, Q_TAU, Q_REST = range(14, 19)
+Q_TIME, Q_S, Q_V, Q_V_RATE, Q_F, Q_F_RATE = range(19, 25)
 
 STICK, ACCELERATING = float(Mode.STICK), float(Mode.ACCELERATING)
 COASTING, DECELERATING = float(Mode.COASTING), float(Mode.DECELERATING)
@@ -61,19 +100,9 @@ _NEVER = 1.0       # a guard that the mode does not have
 
 
 @always_compiled
-def static_coefficient(law, low, limit, tau, exponent, rest):
-    """Return mu_s(t⁻)."""
-    if law == CONSTANT or rest == 0.0:
-        return low
-    if rest == math.inf:
-        return limit
-    if law == EXPONENTIAL:
-        return low - (limit - low) * math.expm1(-rest / tau)
-    if law == KATO:
-        return low - (limit - low) * math.expm1(-(rest / tau) ** exponent)
-    if law == HYPERBOLIC:
-        return low + (limit - low) * (rest / (rest + tau))
-    return low + (limit - low) * math.log1p(rest / tau)
+def static_coefficient(low, limit, tau, rest):
+    """Return mu_s(t⁻) of an exponential law."""
+    return limit if rest == math.inf else low - (limit - low) * math.expm1(-rest / tau)
 
 
 @always_compiled
@@ -121,7 +150,7 @@ def motion_of(p, m):
     return (m[MODE], m[DIRECTION], p[MASS], p[STIFFNESS], p[DAMPING],
             normal * mu, normal * mu_slope, normal * excess * psi, normal * excess * psi_slope, below, above,
             p[CONTACT_STIFFNESS], p[CONTACT_DAMPING], m[X] - m[DEFLECTION],
-            normal, p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT], m[REST],
+            normal, p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], m[REST],
             m[TIME], m[S], m[V], m[V_RATE], m[F], m[F_RATE])
 
 
@@ -192,7 +221,7 @@ def rates(q, w, t, x, u):
 def static_margin(q, w, t, x, u):
     """Return by how much the force in stick is below the static limit, N."""
     force = contact(q, x, u) if is_compliant(q) else applied(q, w, t, x, u)
-    limit = static_coefficient(q[Q_LAW], q[Q_INITIAL], q[Q_LIMIT], q[Q_TAU], q[Q_EXPONENT], q[Q_REST] + t)
+    limit = static_coefficient(q[Q_INITIAL], q[Q_LIMIT], q[Q_TAU], q[Q_REST] + t)
     return q[Q_NORMAL] * limit - abs(force)
 
 

@@ -10,14 +10,11 @@ from ...axis.layout import (
     CONTACT_STIFFNESS,
     DAMPING,
     NORMAL,
-    STATIC_EXPONENT,
     STATIC_INITIAL,
-    STATIC_LAW,
     STATIC_LIMIT,
     STATIC_TAU,
     STIFFNESS,
 )
-from .always_compiled import always_compiled
 from ...core.types import EventKind
 from .automaton import (
     ACCELERATING,
@@ -27,10 +24,10 @@ from .automaton import (
     DIRECTION,
     EXCESS,
     F,
+    FORCE_ROUNDING,
     F_RATE,
     MODE,
     REST,
-    FORCE_ROUNDING,
     S,
     SEGMENT,
     STICK,
@@ -40,13 +37,14 @@ from .automaton import (
     V,
     V_RATE,
     X,
+    always_compiled,
     applied,
     breakpoint_at,
     contact,
+    friction_at_rest,
     friction_lines,
     inputs,
     is_compliant,
-    friction_at_rest,
     motion_of,
     segment_of,
     static_coefficient,
@@ -77,8 +75,7 @@ def start(p, m, w, position, velocity, rest, v, v_rate, f, f_rate):
 @always_compiled
 def static_at(p, rest):
     """Return mu_s(t⁻)."""
-    return static_coefficient(p[STATIC_LAW], p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], p[STATIC_EXPONENT],
-                              rest)
+    return static_coefficient(p[STATIC_INITIAL], p[STATIC_LIMIT], p[STATIC_TAU], rest)
 
 
 @always_compiled

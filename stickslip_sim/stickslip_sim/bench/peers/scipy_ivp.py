@@ -2,24 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """scipy's solve_ivp with events: what most people reach for.  Right-hand side and guards are compiled."""
 
+import importlib.metadata
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from .always_compiled import NUMBA_MISSING, always_compiled
 from ...core.errors import SolverError
-from ..problem import Outcome, Problem
-from .automaton import GUARDS, guards, rates
-from .peer import Peer, Setting, tolerances
-from .segments import run_segments
-
-try:
-    import scipy
-    from scipy.integrate import solve_ivp
-    _MISSING = NUMBA_MISSING
-except ImportError:
-    _MISSING = 'pip install scipy'
+from ..problem import Outcome, Peer, Problem, Setting, tolerances
+from .automaton import GUARDS, SIZE, TIME, U, X, always_compiled, guards, missing, motion_of, rates
+from .resets import end_of_piece, enter_piece, move, note, reset
 
 _FINEST = 100 * np.finfo(float).eps   # scipy's own floor of the relative tolerance
 
@@ -48,11 +40,15 @@ class _Guard:
 
 
 def _run(problem: Problem, method: str, tolerance: float) -> Outcome:
-    w = problem.sinusoids
+    """Simulate, segment by segment."""
+    from scipy.integrate import solve_ivp
+
+    p, w, pieces = problem.parameters, problem.sinusoids, problem.pieces
     options: dict[str, Any] = {'method': method, 'rtol': max(tolerance, _FINEST), 'atol': tolerance,
                                'max_step': problem.longest_step}
 
     def to_event(q: Any, limit: float, x: float, u: float) -> tuple[float, float, float, int]:
+        """Integrate from a reset to the first guard that falls, or for `limit` s; return t, x, ẋ, the guard or −1."""
         def right_side(t: float, y: Any) -> Any:
             out = np.empty(2)
             _rates_into(q, w, t, y, out)
@@ -68,7 +64,23 @@ def _run(problem: Problem, method: str, tolerance: float) -> Outcome:
         fallen = next((i for i, times in enumerate(done.t_events) if len(times)), -1)
         return done.t[-1], done.y[0, -1], done.y[1, -1], fallen
 
-    return run_segments(problem, to_event)
+    m, events = np.zeros(SIZE), problem.event_rows()
+    rows = 0
+    for k in range(len(pieces)):
+        end = end_of_piece(pieces, k, problem.duration)
+        kind, direction = enter_piece(p, m, w, problem.start, pieces, k)
+        rows = note(events, rows, m, kind, direction)
+        while m[TIME] < end and rows >= 0:
+            t, x, u, fallen = to_event(np.array(motion_of(p, m)), end - m[TIME], m[X], m[U])
+            move(p, m, w, t, x, u)
+            if fallen < 0:
+                m[TIME] = end
+            else:
+                kind, direction = reset(p, m, w, fallen)
+                rows = note(events, rows, m, kind, direction)
+        if rows < 0:
+            raise SolverError('more events than the table holds')
+    return Outcome(events[:rows].copy(), float(m[X]))
 
 
 def _prepare(method: str) -> Callable[[Problem, Setting], Callable[[], Outcome]]:
@@ -80,9 +92,10 @@ def _prepare(method: str) -> Callable[[Problem, Setting], Callable[[], Outcome]]
 
 
 def _version() -> str:
-    return f'scipy {scipy.__version__}'
+    return f'scipy {importlib.metadata.version("scipy")}'
 
 
-SCIPY_PEERS = tuple(Peer(f'scipy {method}', settings, _MISSING, _version, _prepare(method)) for method, settings in (
-    ('DOP853', tolerances(1e-4, 1e-6, 1e-8, 1e-10, 1e-12)), ('LSODA', tolerances(1e-6, 1e-9, 1e-12)),
-    ('Radau', tolerances(1e-6, 1e-9))))
+SCIPY_PEERS = tuple(
+    Peer(f'scipy {method}', settings, missing('scipy', 'scipy'), _version, _prepare(method)) for method, settings in (
+        ('DOP853', tolerances(1e-4, 1e-6, 1e-8, 1e-10, 1e-12)), ('LSODA', tolerances(1e-6, 1e-9, 1e-12)),
+        ('Radau', tolerances(1e-6, 1e-9))))

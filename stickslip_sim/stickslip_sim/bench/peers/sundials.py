@@ -3,8 +3,7 @@
 """SUNDIALS CVODE with root finding, called as from C: no Python between two events.
 
 The C libraries are those that scikit-sundae brings along; right-hand side and root functions are compiled to C
-callbacks, and the loop from event to event is compiled too.  `sksundae` is the same integrator as Python users have it.
-Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363.
+callbacks, and the loop from event to event is compiled too.  Reference: Hindmarsh et al., ACM TOMS 31 (2005) 363.
 """
 
 import ctypes
@@ -12,33 +11,72 @@ import functools
 import importlib.metadata
 import importlib.util
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...core.errors import SolverError
-from ..problem import Outcome, Problem
-from .always_compiled import NUMBA_MISSING
-from .automaton import GUARDS, Q_F_RATE, SIZE, TIME, U, X, guards, motion_of, rates
-from .cvode_functions import CvodeFunctions
-from .peer import Peer, Setting, tolerances
+from ..problem import Outcome, Peer, Problem, Setting, tolerances
+from .automaton import GUARDS, Q_F_RATE, SIZE, TIME, U, X, guards, missing, motion_of, rates
 from .resets import end_of_piece, enter_piece, move, note, reset
 
 _ADAMS, _NORMAL, _ROOT_RETURN = 1, 1, 2   # CV_ADAMS, CV_NORMAL, CV_ROOT_RETURN
 _MAX_STEPS = 1_000_000
 _Q = Q_F_RATE + 1                         # numbers of a motion
+_WORD, _REAL, _INT = ctypes.c_size_t, ctypes.c_double, ctypes.c_int   # a pointer is a word
 
 
-def _missing() -> str | None:
-    if importlib.util.find_spec('sksundae') is None:
-        return 'pip install scikit-sundae'
-    return NUMBA_MISSING
+def _library(name: str) -> ctypes.CDLL:
+    """Load a library of the wheel; raises SolverError when the wheel is laid out in another way."""
+    spec = importlib.util.find_spec('sksundae')
+    assert spec is not None
+    assert spec.origin is not None
+    found = sorted((Path(spec.origin).parents[1] / 'scikit_sundae.libs').glob(f'lib{name}-*.so*'))
+    if not found:
+        raise SolverError(f'scikit-sundae has no library {name}: install the wheel of scikit-sundae 1.2')
+    return ctypes.CDLL(str(found[0]), mode=ctypes.RTLD_GLOBAL)
+
+
+class _CvodeFunctions:
+    """The C functions, with pointers as words, as compiled code can call them."""
+
+    def __init__(self) -> None:
+        core, vectors, cvode = (_library(f'sundials_{name}') for name in ('core', 'nvecserial', 'cvode'))
+
+        def declare(library: ctypes.CDLL, name: str, result: Any, *arguments: Any) -> Any:
+            function = getattr(library, name)
+            function.restype, function.argtypes = result, list(arguments)
+            return function
+
+        self.context = declare(core, 'SUNContext_Create', _INT, _INT, _WORD)
+        self.data = declare(core, 'N_VGetArrayPointer', _WORD, _WORD)
+        self.destroy = declare(core, 'N_VDestroy', None, _WORD)
+        self.free_context = declare(core, 'SUNContext_Free', _INT, _WORD)
+        self.free_solver = declare(core, 'SUNNonlinSolFree', _INT, _WORD)
+        self.vector = declare(vectors, 'N_VMake_Serial', _WORD, ctypes.c_int64, _WORD, _WORD)
+        self.create = declare(cvode, 'CVodeCreate', _WORD, _INT, _WORD)
+        self.init = declare(cvode, 'CVodeInit', _INT, _WORD, _WORD, _REAL, _WORD)
+        self.reinit = declare(cvode, 'CVodeReInit', _INT, _WORD, _REAL, _WORD)
+        self.tolerances = declare(cvode, 'CVodeSStolerances', _INT, _WORD, _REAL, _REAL)
+        self.roots = declare(cvode, 'CVodeRootInit', _INT, _WORD, _INT, _WORD)
+        self.directions = declare(cvode, 'CVodeSetRootDirection', _INT, _WORD, _WORD)
+        self.no_warnings = declare(cvode, 'CVodeSetNoInactiveRootWarn', _INT, _WORD)
+        self.user_data = declare(cvode, 'CVodeSetUserData', _INT, _WORD, _WORD)
+        self.max_steps = declare(cvode, 'CVodeSetMaxNumSteps', _INT, _WORD, ctypes.c_long)
+        self.max_step = declare(cvode, 'CVodeSetMaxStep', _INT, _WORD, _REAL)
+        self.stop = declare(cvode, 'CVodeSetStopTime', _INT, _WORD, _REAL)
+        self.fixed_point = declare(cvode, 'SUNNonlinSol_FixedPoint', _WORD, _WORD, _INT, _WORD)
+        self.set_solver = declare(cvode, 'CVodeSetNonlinearSolver', _INT, _WORD, _WORD)
+        self.advance = declare(cvode, 'CVode', _INT, _WORD, _REAL, _WORD, _WORD, _INT)
+        self.root_info = declare(cvode, 'CVodeGetRootInfo', _INT, _WORD, _WORD)
+        self.free = declare(cvode, 'CVodeFree', None, _WORD)
 
 
 class _Code:
     """What has to be compiled once the libraries are there: two callbacks and the loop."""
 
-    def __init__(self, c: CvodeFunctions) -> None:
+    def __init__(self, c: _CvodeFunctions) -> None:
         self.right_side, self.root_function = _callbacks(c.data, _numbers())
         self.run = _run(_to_event(c))
 
@@ -92,7 +130,7 @@ def _callbacks(data: Any, numbers: Any) -> tuple[Any, Any]:
     return right_side, root_function
 
 
-def _to_event(c: CvodeFunctions) -> Any:
+def _to_event(c: _CvodeFunctions) -> Any:
     """Return compiled code that lets CVODE integrate up to an event."""
     import numba
 
@@ -152,8 +190,8 @@ def _run(to_event: Any) -> Any:
 
 
 @functools.cache
-def _loaded() -> tuple[CvodeFunctions, _Code]:
-    c = CvodeFunctions()
+def _loaded() -> tuple[_CvodeFunctions, _Code]:
+    c = _CvodeFunctions()
     return c, _Code(c)
 
 
@@ -208,4 +246,5 @@ def _version() -> str:
     return f'SUNDIALS of scikit-sundae {importlib.metadata.version("scikit-sundae")}'
 
 
-PEER = Peer('CVODE (Adams), as from C', tolerances(1e-6, 1e-8, 1e-10, 1e-12), _missing(), _version, _prepare)
+PEER = Peer('CVODE (Adams), as from C', tolerances(1e-6, 1e-8, 1e-10, 1e-12),
+            missing('sksundae', 'scikit-sundae'), _version, _prepare)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from ..report.values import versions
-from .peers.peer import Setting
+from .problem import Setting
 from .race import RACE_DIGITS, CaseResult, Row
 from .ratios import Ratio
 
