@@ -9,8 +9,8 @@ converges to with smaller steps is not the coasting motion.  `python3 -m benchma
 from typing import NamedTuple
 
 from stickslip_sim.axis import Axis
-from stickslip_sim.extremes.shared_axes import RIGID, paper_axis, run_events
 from stickslip_sim.figures.cycles import cycle_figures
+from stickslip_sim.proof.axes import RIGID, paper_axis, run_events
 from stickslip_sim.report.markdown import markdown_table
 
 FEED = 0.002                   # m/s

@@ -13,8 +13,9 @@ from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.errors import InputError, UnsoundError
 from stickslip_sim.core.input_profile import ramp
 from stickslip_sim.core.types import EventKind, Instant
-from stickslip_sim.extremes.shared_axes import random_axis, random_profiles
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic
+from stickslip_sim.proof.axes import random_axis, random_profiles
+from stickslip_sim.proof.closed_form import exact_static_coefficient
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.axes import RIGID, run_events
 
@@ -29,27 +30,13 @@ LAWS = [
 ]
 
 
-def static(law: StaticLaw, age: mp.mpf) -> mp.mpf:
-    """Return mu_s(age) as written in the docstring of friction.static."""
-    low, rise, z = mp.mpf(law.initial), mp.mpf(law.limit) - mp.mpf(law.initial), age / mp.mpf(law.time_constant)
-    if law.kind == KIND.CONSTANT:
-        return low
-    if mp.isinf(age):
-        return low + rise
-    if law.kind == KIND.EXPONENTIAL:
-        return low + rise * (1 - mp.exp(-z))
-    if law.kind == KIND.KATO:
-        return low + rise * (1 - mp.exp(-z ** mp.mpf(law.exponent)))
-    return low + rise * (z / (z + 1) if law.kind == KIND.HYPERBOLIC else mp.log(1 + z))
-
-
 def break_away(law: StaticLaw, rest: float, speed: float, rate: float, push: float) -> mp.mpf:
     """Return the first t at which c (v t + a t²/2) + h (v + a t) + f t reaches N mu_s(rest + t)."""
     v, a, f = mp.mpf(speed), mp.mpf(rate), mp.mpf(push)
 
     def beyond(t: mp.mpf) -> mp.mpf:
         force = STIFFNESS * (v * t + a * t * t / 2) + DAMPING * (v + a * t) + f * t
-        return force - mp.mpf(NORMAL) * static(law, mp.mpf(rest) + t)
+        return force - mp.mpf(NORMAL) * exact_static_coefficient(law, mp.mpf(rest) + t)
 
     step = mp.mpf(1) / 512
     before = mp.mpf(0)
@@ -68,7 +55,7 @@ def test_break_away_from_a_rigid_contact(law: StaticLaw, rest: float, speed: flo
     axis = Axis(350.0, STIFFNESS, DAMPING, NORMAL, RIGID, friction)
     with mp.workdps(50):
         expected = break_away(law, rest, speed, rate, push)
-        limit = static(law, mp.mpf(rest) + expected)
+        limit = exact_static_coefficient(law, mp.mpf(rest) + expected)
     events = run_events(axis, ramp(speed, rate, math.inf), float(expected) + 1e-3, ramp(0.0, push, math.inf),
                         InitialState(rest_time=rest))
     first = events[0]
@@ -83,7 +70,7 @@ def test_break_away_from_a_rigid_contact(law: StaticLaw, rest: float, speed: flo
 def test_the_laws_equal_their_formulas(law: StaticLaw) -> None:
     for age in (0.0, 1e-9, 1e-3, 0.1, 1.0, 10.0, 1e4):
         with mp.workdps(50):
-            expected = static(law, mp.mpf(age))
+            expected = exact_static_coefficient(law, mp.mpf(age))
         assert abs(law.coefficient(age) - expected) <= 1e-15 * max(expected, 1e-3)
 
 

@@ -3,17 +3,20 @@
 """Folders of studies that somebody has edited, and the words that describe a study on a command line."""
 
 import json
+import os
 from collections.abc import Callable, Sequence
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
+from unittest import mock
 
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
+from stickslip_sim.cli.main import run
 from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, SIDECAR
 from tests.support import made_up_texts
-
-from .called_tool import call_tool
 
 _SCENE = 'paper_fig7'
 _GRID = ('--over', 'drive.velocity=0.001:0.01:3', '--over', 'friction.static.limit=0.2:0.3:2', '--duration', '2')
@@ -124,3 +127,11 @@ def _double(draw: DrawFn, node: Any, key: Any) -> None:
 
 
 _CHANGES: list[Callable[[DrawFn, Any, Any], None]] = [_replace, _replace, _remove, _double]
+
+
+def call_tool(*arguments: str) -> None:
+    """Call the tool, which does what it is asked to or refuses in one line; what it would call internal is raised."""
+    said = StringIO()
+    with mock.patch.dict(os.environ, STICKSLIP_DEBUG='1'), redirect_stdout(StringIO()), redirect_stderr(said):
+        code = run(arguments)
+    assert code == 0 or said.getvalue().count('\n') == 1, (code, said.getvalue())

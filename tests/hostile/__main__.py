@@ -15,8 +15,7 @@ from pathlib import Path
 
 from tests.support.time_and_memory import limit_memory
 
-from . import report
-from .attack import PER_ROUND, REFERENCE_SHARE, Found, Tally, judge_again, one_round
+from .attack import PER_ROUND, REFERENCE_SHARE, Counts, Found, judge_again, one_round, read, table, write
 from .generators import GENERATORS
 from .judges import reference
 
@@ -33,7 +32,7 @@ def main() -> int:
     limit_memory(_MEMORY)
     seed = options.seed if options.seed is not None else str(random.SystemRandom().randrange(10 ** 9))
     print(f'seed {seed}', flush=True)
-    tally, begin = Tally(), time.monotonic()
+    tally, begin = Counts(), time.monotonic()
     shown: Counter[tuple[str, str]] = Counter()
     names = options.only.split(',') if options.only else list(GENERATORS)
     last, k = begin, 0
@@ -47,7 +46,7 @@ def main() -> int:
                 _show(found, Path(options.out))
         k += 1
     _progress(tally, time.monotonic() - begin)
-    print(report.table(tally))
+    print(table(tally))
     refused = list(tally.too_many_refused())
     for line in refused:
         print(line)
@@ -70,13 +69,13 @@ def _options() -> argparse.Namespace:
 
 def _show(found: Found, folder: Path) -> None:
     confirmed = reference.confirm(found.case.parts) if found.judge == 'guards' else None
-    place = report.write(found, folder, confirmed)
+    place = write(found, folder, confirmed)
     print(f'{found.generator}, {found.judge}: {found.text}\n    {place}', flush=True)
     if confirmed:
         print(f'    {confirmed}', flush=True)
 
 
-def _progress(tally: Tally, seconds: float) -> None:
+def _progress(tally: Counts, seconds: float) -> None:
     scenes = sum(tally.scenes.values())
     print(f'{seconds / 60.0:.1f} min: {scenes} scenes, {60.0 * scenes / max(seconds, 1e-9):.0f} a minute, '
           f'{sum(tally.events.values())} events, {sum(tally.refused.values())} refused, '
@@ -84,7 +83,7 @@ def _progress(tally: Tally, seconds: float) -> None:
 
 
 def _again(place: Path) -> int:
-    case, seed = report.read(place)
+    case, seed = read(place)
     found = judge_again(case, seed)
     for judge, text in found:
         print(f'{judge}: {text}')

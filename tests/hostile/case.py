@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """A scene as values by dotted name, and what is run of it."""
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
-from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.core.input_profile import InputProfile
-from stickslip_sim.core.types import EnergyBalance, Event, Instant, Sample
+from stickslip_sim.core.errors import InputError, SolverError
+from stickslip_sim.core.types import EnergyBalance, Event, Sample
+from stickslip_sim.proof.axes import Parts, instant
+from stickslip_sim.proof.judges import Find
 from stickslip_sim.scene import Scene, scene_from_values
-from stickslip_sim.simulation.simulator import Simulator
 from tests.support.time_and_memory import within
 
 Values = dict[str, Any]
@@ -21,41 +20,12 @@ _PATIENCE = 2.0          # s for a slice; some million events
 _HALVINGS = 40           # and parts of the first, each twice as long as the one before: it may hold any number
 
 
-class Find(Exception):  # noqa: N818
-    """What a judge found wrong with a run, in one line."""
-
-
 class LastBits(Find):
     """The same events, but for digits that rounding may change."""
 
 
 class Undecided(Exception):  # noqa: N818
     """A judge cannot decide: the data differ from a tie by rounding, or it takes too long."""
-
-
-class Parts(NamedTuple):
-    """All that a run is made of; the duration in s.  A load (N) is on top of the normal force of the axis."""
-
-    axis: Axis
-    initial: InitialState
-    drive: InputProfile
-    force: InputProfile
-    duration: float
-    load: InputProfile | None = None
-
-    @property
-    def inputs(self) -> tuple[InputProfile, ...]:
-        """All input profiles."""
-        return (self.drive, self.force) if self.load is None else (self.drive, self.force, self.load)
-
-    def axis_under(self, load: float) -> Axis:
-        """Return the axis with the normal force that it has under a load."""
-        return self.axis if self.load is None else replace(self.axis, normal_force=load + self.axis.normal_force)
-
-    @property
-    def heaviest(self) -> Axis:
-        """The axis with the largest normal force that it has at any time."""
-        return self.axis_under(self.load.bounds()[1]) if self.load else self.axis
 
 
 @dataclass
@@ -76,6 +46,14 @@ class Case:
         scene = self.scene
         return Parts(scene.axis, scene.initial, scene.drive, scene.force, self.duration, scene.normal_load)
 
+    @property
+    def events(self) -> list[Event]:
+        """The events of its run; none of one that is refused."""
+        try:
+            return self.parts.events()
+        except (InputError, SolverError):
+            return []
+
 
 class Run(NamedTuple):
     """A run of the engine, cut into its inputs' pieces: events before the start, and (events, state) to each border."""
@@ -93,27 +71,10 @@ class Run(NamedTuple):
         return self.at_start + [event for events, _ in self.stretches for event in events]
 
 
-def simulator(parts: Parts, accounting: bool = False) -> Simulator:
-    """Return the simulator at time 0."""
-    return Simulator(parts.axis, parts.initial, parts.drive, parts.force, accounting=accounting,
-                     load=parts.load)
-
-
-def instant(seconds: float) -> Instant:
-    """Return a time in two parts."""
-    whole = math.floor(seconds)
-    return Instant(float(whole), seconds - whole)
-
-
-def all_events(parts: Parts) -> list[Event]:
-    """Run to the end in one call; raises SolverError."""
-    return simulator(parts).advance(instant(parts.duration))
-
-
 def run(parts: Parts) -> Run:
     """Run with a state at each border of the inputs, about as far as MOST_EVENTS go.  Raises SolverError."""
     parts = _cut(parts)
-    sim = simulator(parts, accounting=True)
+    sim = parts.simulator(accounting=True)
     at_start = list(sim.reset())
     start = sim.sample()
     stretches: list[tuple[list[Event], Sample]] = []
@@ -131,7 +92,7 @@ def run(parts: Parts) -> Run:
 
 def _cut(parts: Parts) -> Parts:
     """Return the parts with a duration in which MOST_EVENTS fall, or few more."""
-    sim, count = simulator(parts), 0
+    sim, count = parts.simulator(), 0
     if len(ends := borders(parts)) > MOST_EVENTS:
         parts = parts._replace(duration=ends[MOST_EVENTS])
     begin = 0.0

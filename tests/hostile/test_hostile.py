@@ -11,12 +11,13 @@ import pytest
 
 from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.types import EventKind, Mode
-from tests.hostile import report
-from tests.hostile.attack import Found, Tally, judge_again, one_round
-from tests.hostile.case import Case, Find, Run, Undecided, Values, run
+from stickslip_sim.proof.judges import Find
+from tests.hostile.attack import Counts, Found, judge_again, one_round, read, write
+from tests.hostile.case import Case, Run, Undecided, Values, run
 from tests.hostile.generators import GENERATORS, draw
-from tests.hostile.judges import batch, bounds, guards, images, parts, reference, touch
+from tests.hostile.judges import JUDGES, guards, reference
 
+RNG = random.Random(0)
 CASE = Case(draw.paper() | draw.constant(0.002), 3.0)
 TOUCHING = Case(draw.axis(350.0, 6e5, 0.0, 3432.3275) | draw.contact(5e6, 0.0) | draw.static(0.12)
                 | draw.kinetic([0.0], [0.12]) | draw.constant(0.0)
@@ -136,7 +137,7 @@ def without(good: Run, *gone: int) -> Run:
 
 
 def test_nothing_is_found_wrong() -> None:
-    found = one_round('slice', Tally(), list(GENERATORS), count=3, share=0.0)
+    found = one_round('slice', Counts(), list(GENERATORS), count=3, share=0.0)
     assert not found, '\n'.join(f'{one.generator}, {one.judge}: {one.text}' for one in found)
 
 
@@ -220,18 +221,31 @@ def test_a_graze_between_samples_is_seen() -> None:
 def test_other_bits_are_seen(good: Run) -> None:
     k = len(good.stretches[0][0]) - 1
     bent = changed(good, k, position=good.stretches[0][0][k].position * (1.0 + 2.0 ** -52))
-    for judge in (images.judge, parts.judge):
+    for judge in ('images', 'parts'):
         with pytest.raises(Find):
-            judge(bent, random.Random(0))
+            JUDGES[judge](bent, RNG)
     with pytest.raises(Find):
-        batch.judge(changed(good, k, velocity=1.0)._replace(parts=good.parts._replace(drive=constant(0.003))))
+        JUDGES['batch'](changed(good, k, velocity=1.0)._replace(
+            parts=good.parts._replace(drive=constant(0.003))), RNG)
 
 
 def test_a_speed_and_an_energy_without_a_source_are_seen(good: Run) -> None:
     with pytest.raises(Find, match='speed'):
-        bounds.judge(changed(good, 3, velocity=3.8e98))
+        JUDGES['bounds'](changed(good, 3, velocity=3.8e98), RNG)
     with pytest.raises(Find, match='energy'):
-        bounds.judge(good._replace(energy=good.energy._replace(friction_loss=good.energy.friction_loss + 1e-6)))
+        JUDGES['bounds'](good._replace(
+            energy=good.energy._replace(friction_loss=good.energy.friction_loss + 1e-6)), RNG)
+
+
+@pytest.mark.parametrize(('at', 'changes', 'text'), [
+    (1, {'position': math.nan}, 'not finite'), (1, {'mode': Mode.STICK}, 'leads from'),
+    (2, {'direction': -1}, 'goes -1'), (2, {'velocity': -0.01}, 'at -0.01 m/s'), (3, {'fraction': 0.1}, 'back'),
+    (3, {'fraction': 1.0}, 'back')])
+def test_an_order_that_cannot_be_is_seen(good: Run, at: int, changes: Values, text: str) -> None:
+    with pytest.raises(Find, match=text):
+        JUDGES['order'](changed(good, at, **changes), RNG)
+    with pytest.raises(Find, match='ends in'):
+        JUDGES['order'](good._replace(stretches=[(good.events, good.start._replace(mode=Mode.YIELDING))]), RNG)
 
 
 def test_a_break_away_at_a_touch_is_seen() -> None:
@@ -240,7 +254,7 @@ def test_a_break_away_at_a_touch_is_seen() -> None:
     period = 2.0 * math.pi / math.sqrt((6e5 + 5e6) / 350.0)
     invented = stick._replace(kind=EventKind.BREAKAWAY, fraction=stick.fraction + 3.0 * period + 1e-10)
     with pytest.raises(Find, match='3 periods'):
-        touch.judge(done._replace(stretches=[([stick, invented], done.stretches[-1][1])]))
+        JUDGES['touch'](done._replace(stretches=[([stick, invented], done.stretches[-1][1])]), RNG)
 
 
 def test_the_reference_sees_a_missed_event(good: Run) -> None:
@@ -266,8 +280,8 @@ def test_what_rounding_of_the_data_may_change_is_undecided_and_no_more(scene: st
 
 
 def test_a_find_is_written_and_judged_again(tmp_path: Path) -> None:
-    place = report.write(Found('slopes', 'a/b', 'guards', 'text', CASE), tmp_path, None)
-    case, seed = report.read(place)
+    place = write(Found('slopes', 'a/b', 'guards', 'text', CASE), tmp_path, None)
+    case, seed = read(place)
     assert seed == 'a/b'
     assert case.parts == CASE.parts
     assert judge_again(case, seed, reference_too=False) == []

@@ -11,10 +11,12 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.types import EnergyBalance, Event, EventKind, Mode, Sample
+from stickslip_sim.proof.axes import Parts, instant
+from stickslip_sim.proof.judges import Find
 from stickslip_sim.reference import ReferenceRun, simulate
-from tests.hostile.case import Case, Find, Parts, Run, Undecided, instant
+from tests.hostile.case import Case, Run, Undecided
 from tests.hostile.generators import GENERATORS
-from tests.hostile.judges import brute, smooth_load
+from tests.hostile.judges import brute
 from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis
 
 pytest.importorskip('mpmath')
@@ -78,7 +80,7 @@ def test_no_break_away_of_the_trial_is_missed_by_brute_force() -> None:
 
 def test_a_good_run_passes(good: Run) -> None:
     assert len(good.events) > 8
-    assert smooth_load.judge(good) == []
+    assert brute.wrong_guards(good) == []
     assert brute.compare(good.parts, good.events) >= len(good.events) - 1
 
 
@@ -93,19 +95,19 @@ def changed(good: Run, events: list[Event]) -> Run:
 def test_a_missed_event_is_seen(good: Run) -> None:
     for k in range(len(good.events)):
         events = [event for i, event in enumerate(good.events) if i != k]
-        assert smooth_load.judge(changed(good, events)), good.events[k]
+        assert brute.wrong_guards(changed(good, events)), good.events[k]
 
 
 def test_an_event_at_another_time_is_seen(good: Run) -> None:
     for k, event in enumerate(good.events):
         events = [*good.events[:k], event._replace(fraction=event.fraction + 1e-10), *good.events[k + 1:]]
-        assert smooth_load.judge(changed(good, events)), event
+        assert brute.wrong_guards(changed(good, events)), event
 
 
 def test_another_force_is_seen(good: Run) -> None:
     for k, event in enumerate(good.events):
         events = [*good.events[:k], event._replace(drive_force=event.drive_force * (1.0 + 1e-8)), *good.events[k + 1:]]
-        assert smooth_load.judge(changed(good, events)), event
+        assert brute.wrong_guards(changed(good, events)), event
 
 
 def test_brute_force_sees_a_missed_break_away(good: Run) -> None:

@@ -12,8 +12,8 @@ from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp, steps, table
 from stickslip_sim.core.types import EventKind, Mode
-from stickslip_sim.extremes.against import error_of_events
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
+from stickslip_sim.proof.judges import error_of_events
 from stickslip_sim.reference import simulate as reference
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step, with_advance

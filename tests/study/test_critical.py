@@ -11,8 +11,8 @@ from stickslip_sim.axis import InitialState
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
-from stickslip_sim.extremes.shared_axes import make, of_kind
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.proof.axes import make, of_kind
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene
 from stickslip_sim.study import Variation

@@ -12,8 +12,8 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Event, EventKind, Mode
-from stickslip_sim.extremes.shared_axes import elapsed
 from stickslip_sim.figures.cycles import cycle_figures
+from stickslip_sim.figures.distance import seconds_between
 from stickslip_sim.figures.point_figures import RUN_FIELDS
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
@@ -64,15 +64,15 @@ def test_figures_are_those_of_runs_of_their_own(name: str, texts: tuple[str, ...
         assert figures.amplitude[k] == max(cycle.slip_travel for cycle in cycle_figures(last))
         assert figures.peak_speed[k] == max(abs(event.velocity) for event in last)
         assert figures.break_away_force[k] == abs(last[0].friction_force)
-        assert figures.period[k] == elapsed(last[0], last[-1])
-        assert figures.stick_share[k] == elapsed(last[-2], last[-1]) / figures.period[k]
+        assert figures.period[k] == seconds_between(last[0], last[-1])
+        assert figures.stick_share[k] == seconds_between(last[-2], last[-1]) / figures.period[k]
         if not figures.settled[k]:
             assert figures.duration[k] > 100.0
         elif math.isnan(figures.settling_time[k]):   # in groups
-            assert any(abs(elapsed(one[0], one[-1]) / figures.period[k] - 1.0) > 1e-6 for one in found[-4:])
+            assert any(abs(seconds_between(one[0], one[-1]) / figures.period[k] - 1.0) > 1e-6 for one in found[-4:])
         else:
             assert figures.settling_time[k] in breaks
-            settled = [elapsed(one[0], one[-1]) for one in found if one[0].time >= figures.settling_time[k]]
+            settled = [seconds_between(one[0], one[-1]) for one in found if one[0].time >= figures.settling_time[k]]
             assert np.abs(np.diff(settled)).max() < 1e-6 * settled[-1]
     assert slips > 3
 

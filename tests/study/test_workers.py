@@ -18,9 +18,9 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.types import EventKind
-from stickslip_sim.extremes.shared_axes import instant, of_kind
 from stickslip_sim.figures.point_figures import FIGURES
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.proof.axes import instant, of_kind
 from stickslip_sim.runs.batch import BatchFigures, Rounds, run_rounds
 from stickslip_sim.study import EvenGrid, Motion, Study, settling, variation
 from stickslip_sim.study.folder import POINTS_TABLE

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Axes and runs that several tests use: those of the extremes suite."""
 
-from stickslip_sim.extremes.shared_axes import (
+from stickslip_sim.proof.axes import (
     COMPLIANT,
     RIGID,
     Contact,

@@ -22,9 +22,9 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
         _check_out(out)
     _check_mpmath()
     from ..core.errors import VerdictError
-    from ..extremes.outcome import Setup
-    from ..extremes.result_table import json_text, markdown_text, row, table_head
-    from ..extremes.suite import chosen, results
+    from ..proof.judges import Setup
+    from ..proof.report import json_text, markdown_text, row, table_head
+    from ..proof.suite import chosen, results
 
     selected = chosen([number.strip().upper() for number in only.split(',')] if only is not None else [])
     print(table_head())
@@ -40,7 +40,7 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
         text = json_text(outcomes, quick) if out.endswith('.json') else markdown_text(outcomes, quick)
         write_text(out, [text])
         say_written(out)
-    missed = [outcome.number for outcome in outcomes if not outcome.passed]
+    missed = [outcome.extreme.number for outcome in outcomes if not outcome.passed]
     if missed:
         raise VerdictError(f'{len(missed)} of {len(outcomes)} extremes missed: {", ".join(missed)}')
 

@@ -5,12 +5,11 @@
 import math
 import random
 
-from stickslip_sim.core.errors import SolverError
-from stickslip_sim.core.types import Event, EventKind
-from stickslip_sim.extremes.grazing_drive import GRAZING_FREQUENCIES, PHASES, grazing_drive
+from stickslip_sim.core.types import EventKind
+from stickslip_sim.proof.axes import GRAZING_FREQUENCIES, PHASES, grazing_drive
 
-from ..case import Case, Values, all_events
-from . import degenerate, draw, machines
+from ..case import Case, Values
+from . import draw, edges, machines
 
 
 def grazing_sine(rng: random.Random) -> Case:
@@ -45,7 +44,7 @@ def grazing_ramp(rng: random.Random) -> Case:
 def peak_at_breakpoint(rng: random.Random) -> Case:
     """A breakpoint within rounding of the greatest speed of a slip, which meets it without acceleration."""
     case = machines.two_breakpoints(rng)
-    peaks = [abs(e.velocity) for e in _events(case) if e.kind in (EventKind.COAST, EventKind.DECELERATE,
+    peaks = [abs(e.velocity) for e in case.events if e.kind in (EventKind.COAST, EventKind.DECELERATE,
                                                                  EventKind.ACCELERATE) and e.velocity]
     if not peaks:
         return case
@@ -77,8 +76,8 @@ def steady_at_breakpoint(rng: random.Random) -> Case:
 
 def step_at_event(rng: random.Random) -> Case:
     """Inputs that jump at the time of an event, or an ulp beside it."""
-    case = rng.choice((machines.two_breakpoints, degenerate.ties, machines.fig4_sweep))(rng)
-    events = [e.time for e in _events(case) if 0.0 < e.time < case.duration]
+    case = rng.choice((machines.two_breakpoints, edges.ties, machines.fig4_sweep))(rng)
+    events = [e.time for e in case.events if 0.0 < e.time < case.duration]
     if not events or 'drive.velocity' not in case.values:
         return case
     times = sorted({draw.beside(rng, t) for t in rng.sample(events[:30], min(len(events[:30]), 3))})
@@ -128,8 +127,15 @@ def sines(rng: random.Random) -> Case:
     return Case(values, case.duration)
 
 
-def _events(case: Case) -> list[Event]:
-    try:
-        return all_events(case.parts)
-    except SolverError:
-        return []
+def shaken(rng: random.Random) -> Case:
+    """A rigid contact with two branches under sines: nothing but rates decides its break-aways."""
+    case = sines(rng)
+    values = {name: value for name, value in case.values.items() if not name.startswith('contact.')}
+    values |= draw.contact() | {'friction.acceleration_dependence': True}
+    swing = math.sqrt(values['axis.drive_stiffness'] / values['axis.mass']) / (2.0 * math.pi)
+    size = values['axis.normal_force'] * values['friction.static.initial'] * rng.uniform(0.3, 3.0)
+    count = rng.randint(1, 3)
+    values |= {'force.amplitudes': [size * rng.uniform(0.01, 1.0) for _ in range(count)],
+               'force.frequencies': [swing * rng.choice((1.0, draw.powers(rng, 0.03, 10.0))) for _ in range(count)],
+               'force.phases': [rng.choice((0.0, 0.5 * math.pi, rng.uniform(-3.0, 3.0))) for _ in range(count)]}
+    return Case(values, case.duration)

@@ -1,9 +1,13 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The events by brute force (`../brute/brute.c`): small steps in long double, compiled when first asked for.
+"""The events by brute force (`../brute.c`): small steps in long double, compiled when first asked for.
 
 How far a list can be compared says a second run whose data are off by 1e-12 of each number: where the two part, or a
 graze or a flat root has made the first doubtful, rounding decides, and not the solver that is judged.
+
+Under a normal force that varies smoothly a motion is not linear, and `guards` cannot follow it.  There the brute force
+goes from the state that each event reports to the next, and rounding of that state is carried along by four more
+motions, each with one of its numbers moved.
 """
 
 import ctypes
@@ -11,8 +15,9 @@ import math
 import os
 import subprocess
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,11 +26,16 @@ from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, constant
 from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.friction import StaticLawKind
+from stickslip_sim.proof.axes import Parts
+from stickslip_sim.proof.judges import Find
 
-from ..case import Find, Parts, Run, Undecided, borders
-from .rounded_data import rounded_data
+from ..case import Run, Undecided, borders
+from .motion import EPSILON, MARGIN, Long, Tables, axis_at, inputs_from, static
+from .nodes import Node, elsewhere, guard_met, impossible, nodes, not_met, passed
+from .reference import rounded_data
+from .segments import FORCES
 
-_SOURCE = Path(__file__).parent.parent / 'brute' / 'brute.c'
+_SOURCE = Path(__file__).parent.parent / 'brute.c'
 _KINDS = (EventKind.BREAKAWAY, EventKind.COAST, EventKind.ACCELERATE, EventKind.DECELERATE, EventKind.STICK,
           EventKind.REVERSE, EventKind.KNOT, EventKind.YIELD)
 _LAWS = (StaticLawKind.CONSTANT, StaticLawKind.EXPONENTIAL, StaticLawKind.KATO, StaticLawKind.HYPERBOLIC,
@@ -39,7 +49,7 @@ _PARTED = 1e-4        # of the duration
 _MOMENT = 1e-9        # of the duration: a coast that short is one by rounding
 
 
-def fields(kind: Any, *names: str) -> list[tuple[str, Any]]:
+def _fields(kind: Any, *names: str) -> list[tuple[str, Any]]:
     """Return the fields of one kind for a structure of ctypes."""
     return [(name, kind) for name in names]
 
@@ -48,28 +58,37 @@ _INT, _DOUBLE, _DOUBLES = ctypes.c_int, ctypes.c_double, ctypes.POINTER(ctypes.c
 
 
 class _Profile(ctypes.Structure):
-    _fields_ = fields(_INT, 'pieces', 'sinusoids') + fields(
+    _fields_ = _fields(_INT, 'pieces', 'sinusoids') + _fields(
         _DOUBLES, 'start', 'value', 'rate', 'amplitude', 'frequency', 'phase')
 
 
 class _Side(ctypes.Structure):
-    _fields_ = fields(_INT, 'law', 'breakpoints', 'fractions') + fields(
-        _DOUBLE, 'initial', 'limit', 'time_constant', 'exponent', 'delay', 'end_slope') + fields(
+    _fields_ = _fields(_INT, 'law', 'breakpoints', 'fractions') + _fields(
+        _DOUBLE, 'initial', 'limit', 'time_constant', 'exponent', 'delay', 'end_slope') + _fields(
         _DOUBLES, 'speeds', 'coefficients', 'psi_speeds', 'psi')
 
 
-class Problem(ctypes.Structure):
-    """What the program takes."""
-
-    _fields_ = fields(
-        _DOUBLE, 'mass', 'stiffness', 'damping', 'feed_damping', 'contact_stiffness', 'contact_damping') + fields(
-        _INT, 'compliant', 'undeflected', 'by_drive') + fields(
-        _DOUBLE, 'velocity', 'rest_time', 'stretch', 'deflection', 'duration', 'steps') + fields(
-        _Side * 2, 'sides') + fields(_Profile, 'drive', 'force', 'normal')
+class _Problem(ctypes.Structure):
+    _fields_ = _fields(
+        _DOUBLE, 'mass', 'stiffness', 'damping', 'feed_damping', 'contact_stiffness', 'contact_damping') + _fields(
+        _INT, 'compliant', 'undeflected', 'by_drive') + _fields(
+        _DOUBLE, 'velocity', 'rest_time', 'stretch', 'deflection', 'duration', 'steps') + _fields(
+        _Side * 2, 'sides') + _fields(_Profile, 'drive', 'force', 'normal')
 
 
 class _Row(ctypes.Structure):
-    _fields_ = fields(_DOUBLE, 'time', 'kind', 'mode', 'direction', 'velocity', 'doubtful')
+    _fields_ = _fields(_DOUBLE, 'time', 'kind', 'mode', 'direction', 'velocity', 'doubtful')
+
+
+class _Segment(ctypes.Structure):
+    _fields_ = _fields(_INT, 'mode', 'direction') + _fields(
+        _DOUBLE, 'second', 'fraction', 'length', 'stretch', 'velocity', 'deflection', 'excess', 'rest_time'
+        ) + _fields(_DOUBLE * 4, 'noise') + _fields(_DOUBLE, 'rounding', 'margin')
+
+
+class _Verdict(ctypes.Structure):
+    _fields_ = _fields(_DOUBLE * 2, 'below', 'time', 'bound', 'last', 'last_bound') + _fields(
+        _DOUBLE, 'stretch', 'velocity', 'stretch_bound', 'velocity_bound')
 
 
 class BruteEvent(NamedTuple):
@@ -83,10 +102,10 @@ class BruteEvent(NamedTuple):
     is_doubtful: bool
 
 
-def brute_force(parts: Parts, steps: float = _STEPS) -> list[BruteEvent]:
+def brute_force(parts: Parts) -> list[BruteEvent]:
     """Return the events of a run; raises Undecided where they do not end."""
     rows = (_Row * _MOST)()
-    count = program().brute_force(ctypes.byref(problem(parts, steps)), rows, _MOST)
+    count = _program().brute_force(ctypes.byref(_problem(parts)), rows, _MOST)
     if not 0 <= count < _MOST:
         raise Undecided('the events or the steps of the brute force do not end')
     return [BruteEvent(row.time, _KINDS[int(row.kind)], Mode(int(row.mode)), int(row.direction), row.velocity,
@@ -152,8 +171,111 @@ def _plain(events: Sequence[BruteEvent], moment: float) -> list[BruteEvent]:
         and event.time - events[k - 1].time <= moment)]
 
 
+def is_linear(run: Run) -> bool:
+    """Whether the normal force is constant but for jumps, and no contact yields."""
+    load = run.parts.load
+    return load is None or (load.is_stepwise and all(event.mode != Mode.YIELDING for event in run.events))
+
+
+def wrong_guards(run: Run) -> list[str]:
+    """Return what is wrong with the guards of a run, in the order of time; MARGIN times rounding is a find."""
+    given = _problem(run.parts)
+    return [text for begin, end in pairwise(list(nodes(run, Tables(run.parts.axis))))
+            for text in _wrong(run.parts, given, begin, end)]
+
+
+def _wrong(parts: Parts, given: _Problem, begin: Node, end: Node) -> Iterator[str]:
+    length = (end.at.second - begin.at.second) + (end.at.fraction - begin.at.fraction)
+    if length <= 0.0:
+        return
+    segment, verdict = _segment(parts, begin, length), _Verdict()
+    if _program().follow_segment(ctypes.byref(given), ctypes.byref(segment), ctypes.byref(verdict)):
+        return   # it takes too many steps
+    for k in range(2):
+        if verdict.below[k] > verdict.bound[k]:
+            yield passed(begin, end, k, verdict.below[k], verdict.bound[k], verdict.time[k], length - verdict.time[k])
+    yield from _ends_elsewhere(parts, begin, end, segment, verdict)
+    if end.event is not None and not end.new_force:
+        yield from _missed(parts, begin, end, length, verdict)
+
+
+def _segment(parts: Parts, begin: Node, length: float) -> _Segment:
+    forces = _forces(parts, begin)
+    stiffness = parts.axis.drive_stiffness
+    contact = parts.axis.contact.stiffness if isinstance(parts.axis.contact, CompliantContact) else math.inf
+    noise = (FORCES * forces / stiffness if stiffness > 0.0 else 0.0, 2.0 * EPSILON * abs(begin.velocity),
+             FORCES * forces / contact, float(begin.excess_noise))
+    return _Segment(begin.mode, begin.direction, begin.at.second, begin.at.fraction, length, _stretch(parts, begin),
+                    begin.velocity, begin.deflection, float(begin.excess), begin.rest_time,
+                    (ctypes.c_double * 4)(*noise), FORCES, MARGIN)
+
+
+def _stretch(parts: Parts, node: Node) -> float:
+    axis = parts.axis
+    if axis.drive_stiffness == 0.0:
+        return 0.0
+    damper = Long(axis.feed_share * axis.drive_damping)
+    feed = inputs_from(parts, node.at).velocity
+    return float((Long(node.drive_force) - damper * (feed - Long(node.velocity))) / Long(axis.drive_stiffness))
+
+
+def _forces(parts: Parts, node: Node) -> float:
+    """Return the sum of the sizes of all forces."""
+    axis, inputs = axis_at(parts, node.at), inputs_from(parts, node.at)
+    most = max(side.static.initial for side in axis.friction.sides)
+    return float(abs(node.drive_force) + 2 * axis.drive_damping * (abs(inputs.velocity) + abs(node.velocity))
+                 + abs(inputs.external_force) + parts.heaviest.normal_force * most)
+
+
+def _ends_elsewhere(parts: Parts, begin: Node, end: Node, segment: _Segment, verdict: _Verdict) -> Iterator[str]:
+    pairs = [('velocity', end.velocity, verdict.velocity, verdict.velocity_bound + 4.0 * EPSILON * abs(end.velocity))]
+    if parts.axis.drive_stiffness > 0.0 and end.event is not None and not end.new_force:
+        late = FORCES * _forces(parts, end) / parts.axis.drive_stiffness
+        pairs.append(('stretch', _stretch(parts, end), segment.stretch + verdict.stretch,
+                      verdict.stretch_bound + late))
+    for name, found, wanted, bound in pairs:
+        if not abs(found - wanted) <= MARGIN * bound:
+            yield elsewhere(begin, end, name, found, wanted, MARGIN * bound)
+
+
+def _missed(parts: Parts, begin: Node, end: Node, length: float, verdict: _Verdict) -> Iterator[str]:
+    event = end.event
+    assert event is not None
+    if begin.mode == Mode.STICK:
+        met = (0 if _sign(parts, event) > 0.0 else 1) if event.kind in (EventKind.BREAKAWAY, EventKind.YIELD) else None
+        yield from _wrong_limit(parts, begin, end, length)
+    else:
+        met = guard_met(begin.mode, event.kind)
+    if met is None:
+        yield impossible(begin, end)
+    elif not abs(verdict.last[met]) <= verdict.last_bound[met]:
+        yield not_met(begin, end, verdict.last[met], verdict.last_bound[met])
+
+
+def _sign(parts: Parts, event: Event) -> float:
+    """Return the sign of the force that ends a stick.
+
+    The force of a contact reaches a limit of 0 in the direction of the slip, that of the drive (−0.0 is one) by itself.
+    """
+    contact = parts.axis.contact
+    by_drive = isinstance(contact, CompliantContact) and contact.ends_by_drive
+    return math.copysign(1.0, event.friction_force or (event.friction_force if by_drive else event.direction))
+
+
+def _wrong_limit(parts: Parts, begin: Node, end: Node, length: float) -> Iterator[str]:
+    event = end.event
+    assert event is not None
+    side = _sign(parts, event)
+    value, growth = static(parts.axis.friction.along(side).static, [Long(begin.rest_time) + Long(length)])
+    if abs(event.static_coefficient - value[0]) > 1e-12 * value[0] + MARGIN * 1e-15 * growth[0]:
+        yield f'mu_s at {end.label} is {event.static_coefficient!r} and not {float(value[0])!r}'
+    normal = axis_at(parts, end.at).normal_force
+    if abs(event.friction_force - side * normal * event.static_coefficient) > 1e-12 * parts.heaviest.normal_force:
+        yield f'the limit at {end.label} is {event.friction_force!r} N under a normal force of {normal!r} N'
+
+
 @cache
-def program() -> ctypes.CDLL:
+def _program() -> ctypes.CDLL:
     """Return the program, compiled for this process."""
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / 'brute.so'
@@ -162,18 +284,18 @@ def program() -> ctypes.CDLL:
         return ctypes.CDLL(str(made))
 
 
-def problem(parts: Parts, steps: float) -> Problem:
-    """Return what the program takes; `steps` in the time in which something changes."""
+def _problem(parts: Parts) -> _Problem:
+    """Return what the program takes."""
     axis, initial = parts.axis, parts.initial
     contact = axis.contact if isinstance(axis.contact, CompliantContact) else None
     normal = parts.load.plus(axis.normal_force) if parts.load else constant(axis.normal_force)
     inputs = [_profile(profile, parts.duration) for profile in (parts.drive, parts.force, normal)]
     sides = (_Side * 2)(_side(axis.friction), _side(axis.friction.backward or axis.friction))
-    return Problem(
+    return _Problem(
         axis.mass, axis.drive_stiffness, axis.drive_damping, axis.feed_share * axis.drive_damping,
         contact.stiffness if contact else 0.0, contact.damping if contact else 0.0, contact is not None,
         contact is not None and contact.undeflected, contact is None or contact.ends_by_drive, initial.velocity,
-        initial.rest_time, initial.stretch, initial.deflection, parts.duration, steps, sides, *inputs)
+        initial.rest_time, initial.stretch, initial.deflection, parts.duration, _STEPS, sides, *inputs)
 
 
 def _side(friction: Friction) -> _Side:

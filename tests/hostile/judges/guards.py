@@ -16,12 +16,11 @@ import numpy as np
 from stickslip_sim.core.types import EventKind, Mode
 
 from ..case import Run
-from .extended import EPSILON, Long
-from .linear import Samples, samples
-from .resistance import ONE, U, Y
+from . import brute
+from .motion import EPSILON, MARGIN, Long, Samples, samples
+from .nodes import ONE, U, Y, elsewhere, guard_met, impossible, not_met, passed
 from .segments import LOWER, UPPER, Segment, limit_along, segments
 
-MARGIN = 1024.0          # so much more than rounding is a find
 FEWEST, MOST = 32, 1024  # samples of a segment
 _PER_SWING = 24
 _AT_ONCE = 6_000         # samples that are worked on together
@@ -39,7 +38,12 @@ class Guards(NamedTuple):
 
 
 def judge(runs: Sequence[Run]) -> list[list[str]]:
-    """Return for each run what is wrong with it, in the order of time."""
+    """Return for each run what is wrong with it, in the order of time; the brute force follows what is not linear."""
+    linear = iter(_judge([run for run in runs if brute.is_linear(run)]))
+    return [next(linear) if brute.is_linear(run) else brute.wrong_guards(run) for run in runs]
+
+
+def _judge(runs: Sequence[Run]) -> list[list[str]]:
     found: list[list[tuple[float, str]]] = [[] for _ in runs]
     groups: dict[tuple[int, int], list[tuple[int, Segment]]] = {}
     for k, run in enumerate(runs):
@@ -178,8 +182,8 @@ def _ends_elsewhere(some: list[Segment], path: Samples, noise: Any, guards: Guar
         segment = some[i]
         if k == 2 and (segment.end.event is None or segment.end.new_force):
             continue
-        yield int(i), (f'{_OUTPUTS[k]} at {segment.end.label} is {float(wanted[i, k])!r} and not {float(ends[i, k])!r} '
-                       f'(bound {float(bound[i, k]):.3g}; from {segment.begin.label}, {segment.begin.mode.name})')
+        yield int(i), elsewhere(segment.begin, segment.end, _OUTPUTS[k], float(wanted[i, k]), float(ends[i, k]),
+                                float(bound[i, k]))
     for i, segment in enumerate(some):
         if segment.end.event is not None and not segment.end.new_force:
             for text in _missed_guard(segment, guards.values[i, -1], guards.slack[i, -1]):
@@ -187,43 +191,24 @@ def _ends_elsewhere(some: list[Segment], path: Samples, noise: Any, guards: Guar
 
 
 def _missed_guard(segment: Segment, values: Any, slack: Any) -> Iterable[str]:
-    assert segment.end.event is not None
-    met = _met(segment, segment.end.event.kind)
-    if met is None:
-        yield f'{segment.end.label} cannot follow {segment.begin.mode.name}'
+    begin, end = segment.begin, segment.end
+    assert end.event is not None
+    row = guard_met(begin.mode, end.event.kind)
+    met = [] if row is None else [row]
+    if begin.mode == Mode.STICK and end.event.kind == EventKind.BREAKAWAY:
+        met = [LOWER, UPPER]
+    if not met:
+        yield impossible(begin, end)
     elif not min(abs(values[row]) - slack[row] for row in met) <= 0:
-        row = met[0]
-        yield (f'{segment.end.label} comes where its guard is {float(values[row]):.6g} and not 0 (bound '
-               f'{float(slack[row]):.3g}; from {segment.begin.label}, {segment.begin.mode.name})')
-
-
-def _met(segment: Segment, kind: EventKind) -> tuple[int, ...] | None:
-    """Return the guards of which one is met at an event, None when the event cannot come in this mode."""
-    mode = segment.begin.mode
-    if mode == Mode.STICK:
-        return (LOWER, UPPER) if kind == EventKind.BREAKAWAY else None
-    if mode == Mode.COASTING:
-        return {EventKind.ACCELERATE: (UPPER,), EventKind.DECELERATE: (LOWER,)}.get(kind)
-    if kind == EventKind.KNOT or (mode == Mode.DECELERATING and kind in (EventKind.STICK, EventKind.REVERSE)):
-        return (UPPER,)
-    return (LOWER,) if kind in (EventKind.COAST, EventKind.ACCELERATE, EventKind.DECELERATE) else None
+        yield not_met(begin, end, float(values[met[0]]), float(slack[met[0]]))
 
 
 _OUTPUTS = 'velocity', 'travel', 'drive force'
 
 
-def _name(segment: Segment, row: int) -> str:
-    if segment.begin.mode == Mode.STICK:
-        return ('the static limit', 'the static limit backwards')[row]
-    if segment.begin.mode == Mode.COASTING:
-        return ('the lower branch', 'the upper branch')[row]
-    return ('the zero of the acceleration', 'the next breakpoint or standstill')[row]
-
-
 def _text(segment: Segment, row: int, time: Any, value: Any, bound: Any) -> str:
-    return (f'{_name(segment, row)} was passed by {float(-value):.6g} (bound {float(bound):.3g}) {float(time)!r} s '
-            f'after {segment.begin.label}, {segment.begin.mode.name}, and {float(segment.length - time):.3g} s before '
-            f'{segment.end.label}')
+    return passed(segment.begin, segment.end, row, float(-value), float(bound), float(time),
+                  float(segment.length - time))
 
 
 def _wrong_limit(segment: Segment) -> Iterable[str]:

@@ -1,18 +1,25 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""From a run to its nodes: the state at each event, at each border of the inputs, and at both ends."""
+"""From a run to its nodes, and what friction and contact do from each of them on.
 
-from collections.abc import Iterator
+A node is the state at an event, at a border of the inputs, or at an end.  From there a mode has a force, makes the
+slider stiffer and damped, and has guards; what is wrong between two nodes is said in one way.
+"""
+
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from stickslip_sim.axis import CompliantContact
+from stickslip_sim.axis import Axis, CompliantContact
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode, Sample
+from stickslip_sim.proof.axes import Parts, instant
 
-from ..case import Parts, Run, borders, instant
-from .extended import EPSILON, Long
-from .friction import Tables
-from .inputs import axis_at
+from ..case import Run, borders
+from .motion import EPSILON, Long, Table, Tables, axis_at
+
+SLIP = Mode.ACCELERATING, Mode.DECELERATING
+F, U, Y, V, ONE, WAVE = range(6)   # places in z, see segments.py
+_NONE = Long(0)
 
 
 @dataclass
@@ -86,3 +93,107 @@ def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any) -> Node:
     return Node(sample.instant, None, sample.mode, sample.direction, sample.position, sample.velocity,
                 sample.drive_force, sample.contact_deflection, sample.rest_time, excess,
                 excess_noise, True)
+
+
+_GUARDS = {Mode.STICK: ('the static limit', 'the static limit backwards'),
+           Mode.COASTING: ('the lower branch', 'the upper branch'),
+           Mode.YIELDING: ('where the contact holds', 'where the slider turns'),
+           Mode.ACCELERATING: ('the zero of the acceleration', 'the next breakpoint'),
+           Mode.DECELERATING: ('the zero of the acceleration', 'the next breakpoint or standstill')}
+_MET = {(Mode.COASTING, EventKind.ACCELERATE): 1, (Mode.COASTING, EventKind.DECELERATE): 0,
+        (Mode.YIELDING, EventKind.STICK): 0, (Mode.YIELDING, EventKind.BREAKAWAY): 1,
+        **{(mode, kind): 0 for mode in SLIP for kind in (EventKind.COAST, EventKind.ACCELERATE, EventKind.DECELERATE)},
+        **{(mode, EventKind.KNOT): 1 for mode in SLIP},
+        (Mode.DECELERATING, EventKind.STICK): 1, (Mode.DECELERATING, EventKind.REVERSE): 1}
+
+
+def guard_met(mode: Mode, kind: EventKind) -> int | None:
+    """Return the guard that an event of a moving slider meets, None when it cannot come in this mode."""
+    return _MET.get((mode, kind))
+
+
+def passed(begin: Node, end: Node, guard: int, by: float, bound: float, after: float, left: float) -> str:
+    """Say that a guard was passed between two nodes."""
+    return (f'{_GUARDS[begin.mode][guard]} was passed by {by:.6g} (bound {bound:.3g}) {after!r} s after {begin.label}, '
+            f'{begin.mode.name}, and {left:.3g} s before {end.label}')
+
+
+def impossible(begin: Node, end: Node) -> str:
+    """Say that an event does not fit the mode before it."""
+    return f'{end.label} cannot follow {begin.mode.name}'
+
+
+def not_met(begin: Node, end: Node, value: float, bound: float) -> str:
+    """Say that an event comes off its guard."""
+    return (f'{end.label} comes where its guard is {value:.6g} and not 0 (bound {bound:.3g}; from {begin.label}, '
+            f'{begin.mode.name})')
+
+
+def elsewhere(begin: Node, end: Node, name: str, found: float, wanted: float, bound: float) -> str:
+    """Say that a motion ends in another state."""
+    return (f'{name} at {end.label} is {found!r} and not {wanted!r} (bound {bound:.3g}; from {begin.label}, '
+            f'{begin.mode.name})')
+
+
+@dataclass
+class Resistance:
+    """The force against the slider: `now` at a node, from there on offset + damping · u + stiffness · y."""
+
+    now: Any
+    lower: Mapping[int, Any]     # the guards, rows by the places in z
+    upper: Mapping[int, Any]
+    moves: bool = True
+    offset: Any = _NONE
+    damping: Any = _NONE
+    stiffness: Any = _NONE
+    coefficient: Any = _NONE     # of friction at the node
+    slope_size: Any = _NONE      # of all that is added up to the slope of friction, or to the damping of the contact
+    psi_slope: Any = _NONE
+
+
+def resistance(axis: Axis, table: Table, begin: Node) -> Resistance:
+    """Return what acts from a node on."""
+    if begin.mode in SLIP:
+        return _of_slip(Long(axis.normal_force), table, begin)
+    if begin.mode == Mode.COASTING:
+        return _of_coasting(Long(axis.normal_force), table, begin)
+    if isinstance(axis.contact, CompliantContact):
+        return _of_contact(axis.contact, begin)
+    return Resistance(Long(0), {F: -1}, {F: 1}, moves=False)
+
+
+def _of_slip(normal: Any, table: Table, begin: Node) -> Resistance:
+    """Return σ N (μ + b (w − w₀)); the guards are the zero of the acceleration, and a breakpoint or standstill."""
+    rising, sigma, speed = begin.mode == Mode.ACCELERATING, Long(begin.direction), abs(begin.velocity)
+    segment = table.segment(speed, rising)
+    kinetic, psi = table.kinetic(segment), table.psi(segment)
+    coefficient, slope, slope_size = kinetic.of(Long(speed)), kinetic.slope, abs(kinetic.slope)
+    if rising:
+        coefficient += begin.excess * psi.of(Long(speed))
+        slope += begin.excess * psi.slope
+        slope_size += 4 * abs(begin.excess * psi.slope)
+    way = sigma if rising else -sigma
+    border = (-Long(table.breakpoints[segment]) if not rising else
+              table.breakpoints[segment + 1] if segment + 1 < len(table.breakpoints) else Long('inf'))
+    return Resistance(sigma * normal * coefficient, {F: way}, {U: -way, ONE: border},
+                      offset=sigma * normal * (coefficient - slope * Long(speed)), damping=normal * slope,
+                      coefficient=coefficient, slope_size=slope_size, psi_slope=psi.slope)
+
+
+def _of_coasting(normal: Any, table: Table, begin: Node) -> Resistance:
+    """Return the friction of coasting, which follows the drive; the guards are both branches."""
+    sigma, speed = Long(begin.direction), abs(begin.velocity)
+    segment = table.segment(speed, True)
+    coefficient = table.kinetic(segment).of(Long(speed))
+    band = normal * begin.excess * table.psi(segment).of(Long(speed))
+    return Resistance(sigma * normal * coefficient, {F: sigma, ONE: -normal * coefficient},
+                      {F: -sigma, ONE: normal * coefficient + band}, moves=False)
+
+
+def _of_contact(contact: CompliantContact, begin: Node) -> Resistance:
+    """Return the force of a contact that gives; the guards are the force that ends a stick, and the limit."""
+    stiffness, damping = Long(contact.stiffness), Long(contact.damping)
+    offset = stiffness * Long(begin.deflection)
+    guard = {U: damping, Y: stiffness, ONE: offset, F: Long(contact.ends_by_drive)}   # F_d + F_e is that force and f
+    return Resistance(offset + damping * Long(begin.velocity), {at: -share for at, share in guard.items()}, guard,
+                      offset=offset, damping=damping, stiffness=stiffness, slope_size=damping)

@@ -3,20 +3,23 @@
 """The automaton in multiple precision: the same events, within what rounding of the data may change."""
 
 import math
+import zlib
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, is_dataclass, replace
+from typing import Any
 
 from stickslip_sim.axis import CompliantContact
 from stickslip_sim.core.errors import InputError, SolverError
 from stickslip_sim.core.input_profile import InputProfile
 from stickslip_sim.core.types import Event, EventKind
-from stickslip_sim.extremes.against import error_of_events
-from stickslip_sim.extremes.outcome import Missed
+from stickslip_sim.figures.distance import first_mismatch
+from stickslip_sim.proof.axes import Parts
+from stickslip_sim.proof.judges import Find, error_of_events
+from stickslip_sim.proof.transforms import scaled_profile
 from stickslip_sim.reference import simulate
 from tests.support.time_and_memory import within
 
-from ..case import Find, Parts, Run, Undecided, all_events
-from .rounded_data import rounded_data
+from ..case import Run, Undecided
 
 _DIGITS = 30
 _MOST_EVENTS, _MOST_CONFIRMED = 20, 60
@@ -27,6 +30,8 @@ _ROOT = 6e-8           # of rounding, four times: to which a double root is righ
 _ROUNDING = 1e-13     # of the data: what it changes, no double can be blamed for
 _OTHERS = 1e300       # in place of an error: the events are not the same ones
 _ROUNDINGS = 4        # of each number of the data by itself, see `rounded_data`
+_SIZE = 1e-14            # of each number: 90 times what a double rounds, for the sums along 20 events
+_GIVEN = {'fractions'}  # shares of one whole, which are 1 and 0
 
 
 def judge(run: Run) -> None:
@@ -66,8 +71,8 @@ def _compare(parts: Parts, events: Sequence[Event]) -> None:
     axis = parts.axis
     for sign in (1.0, -1.0):
         off = sign * _ROUNDING
-        other = parts._replace(drive=_times(parts.drive, 1.0 + off),
-                               load=parts.load and _times(parts.load, 1.0 + 0.7 * off),
+        other = parts._replace(drive=scaled_profile(parts.drive, 1.0 + off),
+                               load=parts.load and scaled_profile(parts.load, 1.0 + 0.7 * off),
                                axis=replace(axis, mass=axis.mass * (1.0 + off),
                                             drive_stiffness=axis.drive_stiffness * (1.0 - off),
                                             drive_damping=axis.drive_damping * (1.0 + off),
@@ -104,12 +109,6 @@ def _first_off(events: Sequence[Event], wanted: Sequence[Event], duration: float
         if _error(events[:k + 1], wanted[:k + 1], duration)[0] > _ERROR:
             return k
     return min(len(events), len(wanted))
-
-
-def _times(profile: InputProfile, factor: float) -> InputProfile:
-    sinusoids = tuple(sinusoid._replace(amplitude=factor * sinusoid.amplitude) for sinusoid in profile.sinusoids)
-    return replace(profile, values=tuple(factor * x for x in profile.values),
-                   rates=tuple(factor * x for x in profile.rates), sinusoids=sinusoids)
 
 
 def _slides_steadily(parts: Parts, events: Sequence[Event], wanted: Sequence[Event]) -> bool:
@@ -165,7 +164,7 @@ def _touches(events: Sequence[Event], wanted: Sequence[Event], parts: Parts) -> 
 
     That is for no time at all, or with a speed whose square is rounding beside that of the swing.
     """
-    k = _first_difference(events, wanted)
+    k = first_mismatch(events, wanted)
     if k + 1 >= len(wanted) or (wanted[k].kind, wanted[k + 1].kind) != (EventKind.BREAKAWAY, EventKind.STICK):
         return False
     axis = parts.axis
@@ -176,15 +175,10 @@ def _touches(events: Sequence[Event], wanted: Sequence[Event], parts: Parts) -> 
 
 def _turns_on_a_breakpoint(events: Sequence[Event], wanted: Sequence[Event]) -> bool:
     """Whether what differs first is a breakpoint that is passed, or not, with the forces in balance."""
-    k = _first_difference(events, wanted)
+    k = first_mismatch(events, wanted)
     largest = max([abs(event.drive_force) for event in wanted], default=0.0)
     return any(event.kind == EventKind.KNOT and abs(event.drive_force - event.friction_force) <= _ROOT * largest
                for event in [*events[k:k + 1], *wanted[k:k + 1]])
-
-
-def _first_difference(events: Sequence[Event], wanted: Sequence[Event]) -> int:
-    return next((i for i, (a, b) in enumerate(zip(events, wanted)) if (a.kind, a.direction) != (b.kind, b.direction)),
-                min(len(events), len(wanted)))
 
 
 def _events(parts: Parts) -> Sequence[Event]:
@@ -195,18 +189,44 @@ def _error(events: Sequence[Event], wanted: Sequence[Event], duration: float) ->
     try:
         error = error_of_events(events, wanted, duration)
         return error, f'an error of {error:.3g} of the length or the travel'
-    except Missed as missed:
-        k = _first_difference(events, wanted)
+    except Find as find:
+        k = first_mismatch(events, wanted)
         times = [repr(e[k].time) if k < len(e) else 'none' for e in (events, wanted)]
-        return _OTHERS, f'{missed}; at {times[0]} s instead of {times[1]} s'
+        return _OTHERS, f'{find}; at {times[0]} s instead of {times[1]} s'
 
 
 def confirm(parts: Parts, patience: float = _PATIENCE) -> str:
     """Return in words what the reference says to the events of a run."""
     try:
-        compare(parts, all_events(parts), _MOST_CONFIRMED, patience)
+        compare(parts, parts.events(), _MOST_CONFIRMED, patience)
     except Find as find:
         return f'the engine is wrong: {find}'
     except (Undecided, SolverError) as error:
         return f'undecided: {error}'
     return f'the first {_MOST_CONFIRMED} events are right'
+
+
+def rounded_data(parts: Parts, salt: int, size: float = _SIZE) -> Parts:
+    """Return the parts with each number moved by its own share of `size`; raises InputError where their order is lost.
+
+    Equal numbers stay equal, and opposite ones opposite, since a scene means that (mu_s(0) = mu_k(0), a drive that
+    comes back).  The duration stays.
+    """
+    return Parts(*(_moved(part, salt, size) for part in parts))._replace(duration=parts.duration)
+
+
+def _moved(value: Any, salt: int, size: float) -> Any:
+    if type(value) is float:
+        return value * (1.0 + size * _share(abs(value), salt)) if math.isfinite(value) else value
+    if isinstance(value, tuple):
+        moved = [_moved(one, salt, size) for one in value]
+        return type(value)(*moved) if hasattr(value, '_fields') else tuple(moved)
+    if is_dataclass(value) and not isinstance(value, type):
+        return replace(value, **{one.name: _moved(getattr(value, one.name), salt, size) for one in fields(value)
+                                 if one.name not in _GIVEN})
+    return value
+
+
+def _share(value: float, salt: int) -> float:
+    """Return a number between −1 and 1 that any other value has otherwise."""
+    return zlib.crc32(f'{salt} {value!r}'.encode()) / 2.0 ** 31 - 1.0

@@ -15,13 +15,11 @@ import numpy as np
 
 from stickslip_sim.axis import Axis, CompliantContact
 from stickslip_sim.core.types import EventKind, Mode
+from stickslip_sim.proof.axes import Parts
 
-from ..case import Parts, Run
-from .extended import EPSILON, PI, Long
-from .friction import Tables, static
-from .inputs import Inputs, axis_at, force_before, inputs_from, rounding_of
-from .nodes import Node, nodes
-from .resistance import ONE, SLIP, WAVE, F, Resistance, U, V, Y, resistance
+from ..case import Run
+from .motion import EPSILON, PI, Inputs, Long, Tables, axis_at, force_before, inputs_from, rounding_of, static
+from .nodes import ONE, SLIP, WAVE, F, Node, Resistance, U, V, Y, nodes, resistance
 
 FORCES = 16.0 * EPSILON       # of the sum of all forces: what rounding makes of a residual
 _UNFELT = 1e-17               # of the sum of all forces: an acceleration that no digit of them shows

@@ -18,9 +18,9 @@ from stickslip_sim.compare.statements import findings_on
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, steps
 from stickslip_sim.core.types import Event, EventKind, Mode
-from stickslip_sim.extremes.shared_axes import random_profiles, with_static
 from stickslip_sim.friction import StaticLawKind
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.proof.axes import random_profiles, with_static
 from stickslip_sim.recording import read_run
 from stickslip_sim.reference import simulate as simulate_reference
 from stickslip_sim.simulation.simulator import Simulator

@@ -13,10 +13,10 @@ from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp
 from stickslip_sim.core.types import Event, EventKind, Instant
-from stickslip_sim.extremes.against import error_of_events
-from stickslip_sim.extremes.shared_axes import random_profiles
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table, smooth
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.proof.axes import random_profiles
+from stickslip_sim.proof.judges import error_of_events
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene
 from stickslip_sim.simulation.simulator import Simulator

@@ -12,8 +12,8 @@ import pytest
 from stickslip_sim.axis import CompliantContact, InitialState
 from stickslip_sim.core.input_profile import InputProfile, constant, steps
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode
-from stickslip_sim.extremes.grazing_drive import GRAZING_FREQUENCIES, PHASES, grazing_drive
 from stickslip_sim.friction import StaticLaw, StaticLawKind
+from stickslip_sim.proof.axes import GRAZING_FREQUENCIES, PHASES, grazing_drive
 from stickslip_sim.reference import simulate
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis, random_axis, run_events

@@ -16,8 +16,8 @@ from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import UnsoundError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
 from stickslip_sim.core.types import EventKind, Mode
-from stickslip_sim.extremes.shared_axes import COMPLIANT, RIGID, Contact, instant, paper_axis
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.proof.axes import COMPLIANT, RIGID, Contact, instant, paper_axis
 from stickslip_sim.runs.batch import figures_in, new_rows
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact

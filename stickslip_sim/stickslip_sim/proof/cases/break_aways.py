@@ -1,0 +1,216 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""X1, X2, X4, X5, X18: a break-away is where it is: grazed, under a blow, at the limit, while the contact rings.
+
+X4 looks at what follows one: branches apart below the limit velocity.
+"""
+
+import random
+from collections.abc import Callable
+from dataclasses import replace
+
+from mpmath import mpf, workdps
+
+from ...axis import Axis, CompliantContact, InitialState
+from ...core.input_profile import InputProfile, ramp, steps
+from ...core.types import Event, EventKind
+from ...friction import KineticTable, StaticLaw, StaticLawKind
+from ...friction.kinetic import default_excess
+from ...solvers import Solver
+from ..axes import (
+    CONTACTS,
+    GRAZING_FREQUENCIES,
+    PHASES,
+    RIGID,
+    Contact,
+    grazing_drive,
+    instant,
+    make,
+    of_kind,
+    paper_axis,
+    random_axis,
+    run_events,
+    with_static,
+)
+from ..closed_form import (
+    CLOSED_FORM_DIGITS,
+    Jump,
+    Number,
+    exact,
+    exact_contact_force,
+    exact_static_coefficient,
+    root_near,
+)
+from ..judges import Measurement, Setup, Tally, error_of_run, in_parts, require, same_bits
+
+_BLOW, _LENGTH = 33e3, 0.002   # N, s
+_OVERSHOOTS = (1e-4, 1e-6, 1e-12, -1e-12, -1e-6)
+
+
+def grazing(setup: Setup) -> Measurement:
+    """X1: random phases and frequencies, both contacts; a peak above the limit breaks away there, one below never."""
+    tally = Tally(0.0)
+    for seed in range(setup.choose(100_000, 100)):
+        tally.measure(_grazes, setup.solver, seed, _OVERSHOOTS[seed % len(_OVERSHOOTS)])
+    return tally.finding('missed or invented')
+
+
+def _grazes(solver: Solver, seed: int, overshoot: float) -> None:
+    rng = random.Random(seed)
+    axis = paper_axis(rng.choice(CONTACTS))
+    phase, frequency = rng.uniform(*PHASES), rng.uniform(*GRAZING_FREQUENCIES)
+    drive = grazing_drive(axis, overshoot, frequency, phase)
+    period = 1.0 / frequency
+    events = make(axis, drive, solver=solver).advance(instant(2.0 * period if overshoot < 0.0 else period))
+    if overshoot < 0.0:
+        require(not events, f'invented at {events[0].time if events else None!r} s')
+        return
+    require(events and events[0].kind == EventKind.BREAKAWAY, 'missed')
+    turn = events[0].time * frequency + phase / 6.283185307179586
+    require(abs(turn - 0.5) < 0.1, f'a break-away {abs(turn - 0.5):.3g} periods beside the peak')
+
+
+def blows(setup: Setup) -> Measurement:
+    """X2: 2 ms, 33 kN on a stuck axis at a random instant; rigid and compliant, pressed before or not."""
+    tally = Tally(1e-12, 's')
+    for seed in range(setup.choose(1000, 40)):
+        for contact in CONTACTS:
+            tally.measure(_blow, setup.solver, contact, seed)
+    return tally.finding('blows missed')
+
+
+def _blow(solver: Solver, contact: Contact, seed: int) -> float:
+    """Return how far the break-away is from its instant, s."""
+    rng = random.Random(seed)
+    axis = paper_axis(contact)
+    begin, load = rng.uniform(0.0, 5.0), rng.choice((0.0, rng.uniform(-250.0, 400.0)))
+    end = begin + _LENGTH
+    events = run_events(axis, 0.0, 6.0, steps('force', [0.0, begin, end], [load, load + _BLOW, load]), solver=solver)
+    require(events and events[0].kind == EventKind.BREAKAWAY and begin <= events[0].time <= end,
+            'no break-away within the blow')
+    first = events[0]
+    if contact == RIGID:
+        return abs(float(exact(*first.instant) - begin))
+    force = exact_contact_force(axis, [Jump(0, 0, load), Jump(begin, 0, (load + _BLOW) - load)])
+    return _distance(first, force, axis.normal_force * mpf(0.24), begin, end)
+
+
+def _distance(event: Event, force: Callable[[Number], Number], limit: Number, low: float, high: float) -> float:
+    with workdps(CLOSED_FORM_DIGITS):
+        root = root_near(lambda t: force(t) - limit, low, high)
+        return abs(float(exact(*event.instant) - root))
+
+
+def at_the_limit(setup: Setup) -> Measurement:
+    """X18: the force at the first break-away over N mu_s, less one; every law, random axes, both contacts."""
+    tally = Tally(1e-12)
+    for seed in range(setup.choose(2000, 60)):
+        for kind in StaticLawKind:
+            tally.measure(_first_break, setup.solver, kind, seed)
+    for share in (-1.0, 1.0):
+        for contact in CONTACTS:
+            tally.measure(_held_at_the_limit, setup.solver, contact, share)
+    return tally.finding('not at the limit')
+
+
+def _first_break(solver: Solver, kind: StaticLawKind, seed: int) -> float:
+    """Return | |F| / (N mu_s) − 1 | at the instant found, from the inputs and 50 digits; no other instant before it."""
+    rng = random.Random(seed)
+    axis = random_axis(rng)
+    tau, exponent = 10 ** rng.uniform(-2, 1), rng.choice((0.4, 1.0, 2.5))
+    initial = axis.friction.static.initial
+    axis = with_static(axis, StaticLaw(kind, initial, initial + rng.uniform(0.01, 0.2), tau, exponent))
+    rest, speed, rate = 10 ** rng.uniform(-3, 1), 10 ** rng.uniform(-4, -2), 10 ** rng.uniform(-5, -2)
+    if axis.drive_damping * speed > 0.5 * axis.normal_force * initial:   # its start alone must not break it away
+        axis = replace(axis, drive_damping=0.5 * axis.normal_force * initial / speed)
+    drive = ramp(speed, rate, float('inf'))
+    duration = 1.0
+    while duration < 1e9:
+        events = run_events(axis, drive, duration, initial=InitialState(rest_time=rest), solver=solver)
+        if events:
+            break
+        duration *= 8.0
+    require(events and events[0].kind == EventKind.BREAKAWAY, 'no break-away')
+    return _excess_of_force(axis, events[0], rest, speed, rate)
+
+
+def _excess_of_force(axis: Axis, event: Event, rest: float, speed: float, rate: float) -> float:
+    with workdps(CLOSED_FORM_DIGITS):
+        t = exact(*event.instant)
+        c, h = mpf(axis.drive_stiffness), mpf(axis.drive_damping)
+        if isinstance(axis.contact, CompliantContact):
+            jumps = [Jump(0, 0, h * speed), Jump(0, 1, c * speed + h * rate), Jump(0, 2, c * rate)]
+            force = exact_contact_force(axis, jumps)(t)
+        else:
+            force = c * (mpf(speed) + mpf(rate) * t / 2) * t + h * (mpf(speed) + mpf(rate) * t)
+        limit = axis.normal_force * exact_static_coefficient(axis.friction.static, mpf(rest) + t)
+        return abs(float(force / limit - 1))
+
+
+def _held_at_the_limit(solver: Solver, contact: Contact, side: float) -> None:
+    """See that a force within the limit, and one on it, hold for ever; a relative 1e-12 more does not."""
+    axis = paper_axis(contact)
+    limit = side * 0.24 * axis.normal_force
+    if isinstance(contact, CompliantContact):   # a step would ring over it: bring it there slowly
+        limit *= 1.0 + axis.drive_stiffness / contact.stiffness   # the drive spring takes its part
+        reach = 1e7
+        for share, holds in ((1.0 - 1e-9, True), (1.0 + 1e-9, False)):
+            slow = InputProfile((0.0, reach), (0.0, share * limit), (share * limit / reach, 0.0))
+            none = run_events(axis, 0.0, 2e7, slow, solver=solver) == []
+            require(none == holds, f'wrong at {share!r} of the limit')
+        return
+    for force, holds in ((limit * (1.0 - 1e-15), True), (limit, True), (limit * (1.0 + 1e-12), False)):
+        events = run_events(axis, 0.0, 10.0, force, solver=solver)
+        require((events == []) == holds, f'wrong under {force!r} N')
+
+
+def coasting(setup: Setup) -> Measurement:
+    """X4: the peak speed stays below v_gr, where the branches are apart; the run is the reference's."""
+    tally = Tally(1e-12)
+    for contact in CONTACTS:
+        for speed in setup.choose((0.001, 0.0015, 0.002, 0.003, 0.005), (0.002,)):
+            tally.measure(_below_the_limit_velocity, setup.solver, contact, speed)
+    for seed in range(setup.choose(60, 4)):
+        tally.measure(_random_branches, setup.solver, seed)
+    return tally.finding()
+
+
+def _below_the_limit_velocity(solver: Solver, contact: Contact, speed: float) -> float:
+    axis = paper_axis(contact)
+    events = run_events(axis, speed, 3.0, solver=solver)
+    coasts = [event.velocity for event in of_kind(events, EventKind.COAST)]
+    require(coasts and max(coasts) < axis.friction.kinetic.velocities[-1], 'the branches are not apart at the peak')
+    _check_independent_of_steps(solver, axis, speed, events)
+    return error_of_run(solver, axis, speed, 3.0)
+
+
+def _random_branches(solver: Solver, seed: int) -> float:
+    """Both branches fall by random amounts, so that the coasting band is wide, narrow or bent by a breakpoint."""
+    rng = random.Random(seed)
+    top = rng.uniform(0.01, 0.05)
+    kinetic = KineticTable((0.0, rng.uniform(0.2, 0.8) * top, top), (0.12, rng.uniform(0.07, 0.12), 0.05))
+    axis = paper_axis(rng.choice(CONTACTS), tau=10 ** rng.uniform(-1.5, 0))
+    axis = replace(axis, drive_damping=rng.choice((0.0, 1000.0, 4000.0)),
+                   friction=replace(axis.friction, kinetic=kinetic, excess=default_excess(kinetic)))
+    speed = 10 ** rng.uniform(-3.3, -2.3)
+    _check_independent_of_steps(solver, axis, speed, run_events(axis, speed, 3.0, solver=solver))
+    return error_of_run(solver, axis, speed, 1.5)
+
+
+def _check_independent_of_steps(solver: Solver, axis: Axis, speed: float, events: list[Event]) -> None:
+    for steps_per_second in (7, 1000, 1024):
+        seen = in_parts(make(axis, speed, solver=solver),
+                        (instant((k + 1) / steps_per_second) for k in range(3 * steps_per_second)))
+        same_bits(seen, events, f'{steps_per_second} steps a second')
+
+
+def ringing(setup: Setup) -> Measurement:
+    """X5: 5 to 20 mm/s, so that the next break-away comes while the contact still rings; the reference's events."""
+    tally = Tally(1e-12)
+    for k in range(setup.choose(31, 4)):
+        speed = 0.005 + 0.015 * k / setup.choose(30, 3)
+        for tau in setup.choose((0.02, 0.2), (0.2,)):
+            for damping in (15000.0, 0.0):
+                axis = paper_axis(CompliantContact(5e6, damping), tau=tau)
+                tally.measure(error_of_run, setup.solver, axis, speed, 1.5)
+    return tally.finding('with other events than the reference')
