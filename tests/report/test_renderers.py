@@ -46,6 +46,12 @@ def test_markdown(tmp_path: Path) -> None:
         f'![laws]({tmp_path}/drawn.svg)', '']
 
 
+def test_neighbouring_notes_are_one_list_in_markdown() -> None:
+    notes = [Sentence('beware', NOTE), Sentence('of this', NOTE)]
+    assert list(markdown_lines([*notes, 'so it is', *notes])) == [
+        '* beware', '* of this', '', 'so it is', '', '* beware', '* of this', '']
+
+
 def test_page_and_the_values_behind_it(tmp_path: Path) -> None:
     write_page(tmp_path, 'Laws <1>', parts(tmp_path), {'rms': (0.1, math.inf)})
     page = (tmp_path / 'report.html').read_text()

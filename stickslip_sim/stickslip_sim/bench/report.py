@@ -5,9 +5,12 @@
 import os
 import pathlib
 import platform
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ..report.markdown import markdown_lines
+from ..report.model import NOTE, Part, Section, Sentence, Table
+from ..report.text import text_lines
 from ..report.values import versions
 from .problem import Setting
 from .race import RACE_DIGITS, CaseResult, Row
@@ -43,46 +46,50 @@ def machine() -> str:
 
 def text_table(case: Json) -> str:
     """Return a case for the terminal."""
-    return '\n'.join([_heading(case), *_aligned(_HEADS, _cells(case), texts=2), *_notes(case)])
+    return '\n'.join(text_lines([_heading(case), _table(case), *_notes(case)]))
 
 
 def marks_table(figures: Sequence[Json]) -> str:
     """Return the figures beside their marks for the terminal."""
-    return '\n'.join(_aligned(_MARK_HEADS, _mark_cells(figures, 'NO'), texts=2))
+    return '\n'.join(text_lines([_marks(figures, 'NO')]))
 
 
 def markdown(data: Json) -> str:
     """Return the page that `bench.md` holds, and docs/accuracy_tables.md between its markers."""
+    return '\n'.join(markdown_lines(_page(data), level=3))
+
+
+def _page(data: Json) -> Iterator[Part]:
     known = '; '.join(f'{name} {version}' for name, version in data['versions'].items())
-    lines = [f'Measured on {data["machine"]} with {known}; medians of {data["rounds"]} interleaved rounds (fewer of'
-             ' what takes seconds), processor time.', '']
+    yield (f'Measured on {data["machine"]} with {known}; medians of {data["rounds"]} interleaved rounds (fewer of'
+           ' what takes seconds), processor time.')
     if data['ratios']:
-        lines += [*_markdown_table(_MARK_HEADS, _mark_cells(data['ratios'], '**no**')), '']
+        yield _marks(data['ratios'], '**no**')
     for case in data['cases']:
-        lines += [f'### {_heading(case)}', '', *_markdown_table(_HEADS, _cells(case)), '',
-                  *(f'* {note}' for note in _notes(case)), '']
-    return '\n'.join(lines).rstrip() + '\n'
+        yield Section(_heading(case), [_table(case), *(Sentence(note, NOTE) for note in _notes(case))])
 
 
 def _heading(case: Json) -> str:
     return f'{case["name"]}: {case["summary"]} ({case["duration"]:g} s, {case["reference_events"]} events)'
 
 
-def _cells(case: Json) -> list[tuple[str, ...]]:
+def _table(case: Json) -> Table:
     raced = [row for row in case['rows'] if row['errors']]
     exact = next((_cost(row) for row in raced if row['solver'].startswith('exact')), None)
-    return [(row['solver'], row['label'], _short(_cost(row) * 1e6), _short(_cost(row) / exact) if exact else '',
-             f'{row["errors"]["missed"]} of {row["errors"]["reference_events"]}', str(row['errors']['invented']),
-             f'{row["errors"]["time"]:.1e}', f'{row["errors"]["position"]:.1e}') for row in raced]
+    return Table(_HEADS, [
+        (row['solver'], row['label'], _short(_cost(row) * 1e6), _short(_cost(row) / exact) if exact else '',
+         f'{row["errors"]["missed"]} of {row["errors"]["reference_events"]}', str(row['errors']['invented']),
+         f'{row["errors"]["time"]:.1e}', f'{row["errors"]["position"]:.1e}') for row in raced], texts=(0, 1))
 
 
 def _cost(row: Json) -> float:
     return float(row['cost_per_simulated_second']['median'])
 
 
-def _mark_cells(figures: Sequence[Json], missed: str) -> list[tuple[str, ...]]:
-    return [(figure['what'], figure['case'], _short(figure['measured']), figure['mark'] or '–', figure['aim'] or '–',
-             {True: 'yes', False: missed, None: '–'}[figure['met']]) for figure in figures]
+def _marks(figures: Sequence[Json], missed: str) -> Table:
+    return Table(_MARK_HEADS, [
+        (figure['what'], figure['case'], _short(figure['measured']), figure['mark'] or '–', figure['aim'] or '–',
+         {True: 'yes', False: missed, None: '–'}[figure['met']]) for figure in figures], texts=(0, 1))
 
 
 def _notes(case: Json) -> list[str]:
@@ -102,18 +109,6 @@ def _setting(setting: Setting) -> Json:
 
 def _rivals(results: Sequence[CaseResult]) -> dict[str, str]:
     return {row.contestant: row.version for result in results for row in result.rows if row.version}
-
-
-def _aligned(heads: tuple[str, ...], cells: Sequence[tuple[str, ...]], texts: int) -> list[str]:
-    """Return lines whose first `texts` columns stand to the left, the others to the right."""
-    rows = [heads, *cells]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(heads))]
-    return ['  '.join(cell.ljust(width) if i < texts else cell.rjust(width)
-                      for i, (cell, width) in enumerate(zip(row, widths))).rstrip() for row in rows]
-
-
-def _markdown_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    return [f'| {" | ".join(row)} |' for row in (heads, ['---'] * len(heads), *rows)]
 
 
 def _short(value: float) -> str:

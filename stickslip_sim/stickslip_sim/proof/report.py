@@ -6,6 +6,8 @@ import json
 import math
 from collections.abc import Sequence
 
+from ..report.markdown import markdown_lines
+from ..report.model import Section, Table
 from ..report.values import versions
 from .judges import ExtremeResult
 
@@ -30,21 +32,19 @@ def markdown_text(outcomes: Sequence[ExtremeResult], quick: bool) -> str:
     met = sum(outcome.passed for outcome in outcomes)
     size = ' --quick' if quick else ''
     known = ', '.join(f'{name} {version}' for name, version in versions().items())
-    lines = ['# The extremes', '',
-             'See here how this engine does in the cases that break other simulators: each case has a mark and the',
-             f'measured figure.  `stickslip extremes{size} --out docs/extremes.md` writes this page; `make extremes`',
-             'measures again and fails when a mark is missed.',
-             '', f'{met} of {len(outcomes)} marks met; {known}.', '',
-             'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae',
-             '1.2), heyoka 7.13, MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.  From X22',
-             'on it has the results of stickslip 0.1.0; [an attack](accuracy_method.md#what-an-attack-found) found',
-             'these.',
-             '', '| # | extreme | elsewhere | mark | measured | met |', '|---|---|---|---|---|---|']
-    for outcome in outcomes:
-        extreme, verdict = outcome.extreme, 'yes' if outcome.passed else '**no**'
-        cells = (extreme.number, extreme.name, extreme.elsewhere, extreme.mark, outcome.finding.figure, verdict)
-        lines.append('| ' + ' | '.join(cell.replace('|', '\\|') for cell in cells) + ' |')
-    return '\n'.join(lines) + '\n'
+    rows = [(found.extreme.number, found.extreme.name, found.extreme.elsewhere, found.extreme.mark,
+             found.finding.figure, 'yes' if found.passed else '**no**') for found in outcomes]
+    page = Section('The extremes', [
+        'See here how this engine does in the cases that break other simulators: each case has a mark and the\n'
+        f'measured figure.  `stickslip extremes{size} --out docs/extremes.md` writes this page; `make extremes`\n'
+        'measures again and fails when a mark is missed.',
+        f'{met} of {len(outcomes)} marks met; {known}.',
+        'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae\n'
+        '1.2), heyoka 7.13, MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.  From X22\n'
+        'on it has the results of stickslip 0.1.0; [an attack](accuracy_method.md#what-an-attack-found) found\n'
+        'these.',
+        Table(('#', 'extreme', 'elsewhere', 'mark', 'measured', 'met'), rows)])
+    return '\n'.join(markdown_lines([page], level=1))
 
 
 def json_text(outcomes: Sequence[ExtremeResult], quick: bool) -> str:
