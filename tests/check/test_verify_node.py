@@ -15,9 +15,8 @@ from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, read_run
 from stickslip_sim.simulation import RigEventKind
-from tests.support.node_processes import running
 from tests.support.rewritten_bags import rewritten
-from tests.support.ros_nodes import Client, client
+from tests.support.ros_nodes import Client, live_axis
 from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -26,10 +25,6 @@ from stickslip_msgs.srv import InjectFault, Step  # noqa: E402
 
 SETTINGS = ('command.timeout:=0.4', 'command.on_timeout:=fault', 'command.acceleration_limit:=1.0',
             'force.course:=sine', 'force.amplitude:=200.0', 'force.frequency:=7.0')
-
-
-def parameters(*settings: str) -> list[str]:
-    return [word for setting in settings for word in ('-p', setting)]
 
 
 def stir(axis: Client) -> None:
@@ -96,9 +91,7 @@ def is_identical(verdict: Verdict) -> bool:
 
 def test_from_the_start_then_in_mid_run_then_killed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Three recordings of one node, each run again by itself."""
-    with client('/cell') as axis, running(*parameters(*SETTINGS, 'record.enabled:=true'), '-r', '__ns:=/cell',
-                                          folder=tmp_path) as process:
-        axis.connect()
+    with live_axis(*SETTINGS, 'record.enabled:=true', folder=tmp_path, namespace='/cell') as (process, axis):
         whole = Path(axis.latest('run_info').bag_path)
         stir(axis)
         assert axis.switch('record', False).success
@@ -173,8 +166,7 @@ def kinds(folder: Path) -> set[int]:
 
 def test_in_lock_step_with_what_happened_in_the_same_gap(tmp_path: Path) -> None:
     """Between two steps: faults, parameters, the start of the recording, and more of both."""
-    with client() as axis, running(*parameters('time.mode:=lockstep', 'scene:=paper_fig7'), folder=tmp_path):
-        axis.connect(is_moving=False)
+    with live_axis('time.mode:=lockstep', 'scene:=paper_fig7', folder=tmp_path) as (_, axis):
         assert axis.call(Step, 'step', steps=1200, velocity=0.004, force=math.nan).success
         inject(axis, 'dry', 'friction_scale', 0.0, 1.7)
         inject(axis, 'lost', 'command_loss', 0.0, 0.5)
@@ -191,8 +183,7 @@ def test_in_lock_step_with_what_happened_in_the_same_gap(tmp_path: Path) -> None
 
 def test_a_new_run_with_other_parameters(tmp_path: Path) -> None:
     """Changed while it pauses at its start, before and after the recording begins."""
-    with client() as axis, running(*parameters('time.mode:=free_run', 'time.factor:=3.0'), folder=tmp_path):
-        axis.connect()
+    with live_axis('time.mode:=free_run', 'time.factor:=3.0', folder=tmp_path) as (_, axis):
         assert axis.switch('set_paused', True).success
         assert axis.trigger('reset').success
         assert axis.set_parameters(axis__normal_force=3000.0, friction__static__limit=0.45).successful

@@ -22,8 +22,8 @@ from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.realtime import scheduling
 from stickslip_sim.realtime.pacing import STRETCH, CoreShare, Pacer
 from stickslip_sim.realtime.scheduling import Scheduling, StepThread
-from tests.support.fake_clock import FakeClock
 from tests.support.rights import needs_fifo
+from tests.support.rigs import FakeClock
 
 MS = 1_000_000
 

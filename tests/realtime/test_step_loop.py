@@ -10,7 +10,6 @@ import pytest
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.time_grid import Grid
-from stickslip_sim.core.types import Instant
 from stickslip_sim.realtime.commands import CommandSlot, Watchdog
 from stickslip_sim.realtime.pacing import Pacer, Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
@@ -18,9 +17,8 @@ from stickslip_sim.simulation import Rig, StepResult
 from stickslip_sim.simulation.rig import RigSettings
 from stickslip_sim.solvers import Solver, exact
 from tests.support.axes import COMPLIANT, make, paper_axis
-from tests.support.fake_clock import FakeClock
+from tests.support.rigs import FakeClock, tired_after
 from tests.support.rigs import make as make_rig
-from tests.support.rigs import tired_after
 from tests.support.waiting import wait_for
 
 RATE = 1000.0
@@ -54,18 +52,6 @@ def quick() -> Iterator[QuickLoop]:
     assert quick.loop.crash is None
 
 
-def test_steps_and_events_are_those_of_the_simulator(quick: QuickLoop) -> None:
-    quick.loop.start()
-    quick.reach(2000)
-    quick.loop.stop()
-    assert [result.step for result in quick.results] == list(range(quick.loop.step + 1))
-    other = make(paper_axis(COMPLIANT), 0.002)
-    events = other.advance(Instant(2.0, 0.0))
-    assert [event for result in quick.results for event in result.events][:len(events)] == events
-    assert all(result.step == math.ceil(event.time * RATE) for result in quick.results for event in result.events)
-    assert quick.results[2000].sample == other.sample()
-
-
 def test_what_prepares_the_start_delays_no_step() -> None:
     clock = FakeClock()
     pacer, begin = Pacer(Grid(RATE), 1.0, clock), clock.now()
@@ -88,7 +74,7 @@ def test_a_command_holds_over_the_step_that_is_made_next(quick: QuickLoop) -> No
     assert velocities[step - 1:step + 1] == [0.002, 0.004]
 
 
-def test_a_run_can_be_repeated_from_its_commands(quick: QuickLoop) -> None:
+def test_steps_and_events_are_those_of_the_simulator_under_the_same_commands(quick: QuickLoop) -> None:
     quick.loop.start()
     for velocity, force in ((0.01, 0.0), (-0.003, 500.0), (0.0, -900.0)):
         quick.reach(quick.loop.step + 211)
@@ -104,8 +90,11 @@ def test_a_run_can_be_repeated_from_its_commands(quick: QuickLoop) -> None:
             again.command_drive(result.velocity)
         if result.force is not None:
             again.command_force(result.force)
-        again.advance(grid.instant(result.step))
+        assert again.advance(grid.instant(result.step)) == [*result.events]
         assert again.sample() == result.sample
+        assert all(result.step == math.ceil(event.time * RATE) for event in result.events)
+    assert [result.step for result in quick.results] == list(range(quick.loop.step + 1))
+    assert sum(len(result.events) for result in quick.results) > 5
 
 
 def test_pause_and_restart(quick: QuickLoop) -> None:

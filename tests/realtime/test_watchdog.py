@@ -14,8 +14,7 @@ from stickslip_sim.realtime.commands import CommandSlot, Watchdog
 from stickslip_sim.realtime.pacing import Pacer, StepClock, Unpaced
 from stickslip_sim.realtime.step_loop import StepLoop
 from stickslip_sim.simulation import RigEventKind, StepResult
-from tests.support.fake_clock import FakeClock
-from tests.support.rigs import make, rig_events_of
+from tests.support.rigs import FakeClock, make, rig_events_of
 from tests.support.waiting import wait_for
 
 MS = 1_000_000

@@ -1,18 +1,22 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip call` beside a node: what the node answers, and what is said when it refuses, or nobody answers."""
+"""`stickslip call` beside a node: what it answers, refuses, or that nobody answers; and two axes on one machine."""
 
 from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import pytest
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
 
 from stickslip_sim.recording import open_bag
+from tests.support.launch_files import launched
+from tests.support.node_processes import NodeProcess, assert_clean, running
+from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered, refused, tool
-
-from tests.support.node_processes import running  # isort: skip  # skips without ROS
-from tests.support.ros_nodes import client  # isort: skip  # skips without ROS
-from tests.support.waiting import wait_for  # isort: skip
+from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 
@@ -24,10 +28,15 @@ NO_PROFILES = {'FASTRTPS_DEFAULT_PROFILES_FILE': '', 'FASTDDS_DEFAULT_PROFILES_F
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Return where an axis runs."""
     folder = tmp_path_factory.mktemp('axis')
-    with running('-r', '__ns:=/cell', folder=folder):
+    with running('time.rate:=200.0', '-r', '__ns:=/cell', folder=folder):
         with client('/cell') as axis:
             axis.connect()
         yield folder
+
+
+def refusal(capsys: Capture, *words: str) -> str:
+    """Return the one line in which the node, or the tool, refuses a call."""
+    return refused(capsys, 'call', *words, '--node', AXIS)
 
 
 def said(capsys: Capture, *words: str) -> str:
@@ -39,7 +48,7 @@ def said(capsys: Capture, *words: str) -> str:
 
 def test_a_recording_and_a_new_run(folder: Path, capsys: Capture) -> None:
     assert said(capsys, 'record').startswith(f'recording into {folder}/runs/cell_paper_fig8_')
-    assert 'refused while recording' in refused(capsys, 'call', 'reset', '--node', AXIS)
+    assert 'refused while recording' in refusal(capsys, 'reset')
     begun = said(capsys, 'record', 'off').removeprefix('recorded into ').strip()
     assert open_bag(begun).is_complete
     assert said(capsys, 'record', 'off') == 'not recording\n'
@@ -47,7 +56,7 @@ def test_a_recording_and_a_new_run(folder: Path, capsys: Capture) -> None:
 
 
 def test_steps_while_it_is_paused(folder: Path, capsys: Capture) -> None:
-    assert 'refused while time runs by itself' in refused(capsys, 'call', 'step', '--node', AXIS)
+    assert 'refused while time runs by itself' in refusal(capsys, 'step')
     try:
         assert said(capsys, 'pause').startswith('paused at simulation time ')
         first, *events, state = said(capsys, 'step', '500', '--velocity', '-0.02', '--force', '10').splitlines()
@@ -56,43 +65,36 @@ def test_steps_while_it_is_paused(folder: Path, capsys: Capture) -> None:
         assert 'drive -20 mm/s' in state
         assert said(capsys, 'step').startswith('1 step made')
         assert 'drive -20 mm/s' in said(capsys, 'step')          # it goes on under what is in force
-        assert 'steps = 0 is refused' in refused(capsys, 'call', 'step', '0', '--node', AXIS)
-        assert 'velocity = 5.0 is refused' in refused(capsys, 'call', 'step', '--velocity', '5', '--node', AXIS)
+        assert 'steps = 0 is refused' in refusal(capsys, 'step', '0')
+        assert 'velocity = 5.0 is refused' in refusal(capsys, 'step', '--velocity', '5')
     finally:
         assert said(capsys, 'resume').startswith('running at simulation time ')
 
 
 def test_faults(folder: Path, capsys: Capture) -> None:
-    assert said(capsys, 'inject-fault', 'friction_scale', '--value', '1.5'
-                ) == 'friction_scale_1 (friction_scale 1.5) begins 0 s from now\n'
-    assert said(capsys, 'inject-fault', 'force_pulse', '--value', '-20', '--start', '60', '--duration', '2', '--id', 'a'
-                ) == 'a (force_pulse -20) begins 60 s from now\n'
-    assert said(capsys, 'inject-fault', 'drive_freeze', '--start', '60', '--id', 'b'
-                ) == 'b (drive_freeze) begins 60 s from now\n'
-    assert said(capsys, 'inject-fault', 'encoder_dropout', '--value', '0.5', '--id', 'c') == (
-        'c (encoder_dropout 0.5) begins 0 s from now; encoder_dropout does nothing: no encoder is read; '
-        'set joint_interface.enabled: true\n')
-    assert said(capsys, 'clear-faults', 'c') == 'c cleared\n'
-    assert said(capsys, 'clear-faults', 'b') == 'b cleared\n'
-    assert said(capsys, 'clear-faults', 'a') == 'a cleared\n'
-    assert said(capsys, 'clear-faults') == 'cleared: friction_scale_1\n'
-    assert "kind = 'friction' is refused" in refused(capsys, 'call', 'inject-fault', 'friction', '--node', AXIS)
+    for words, answer in (
+            ('friction_scale --value 1.5', 'friction_scale_1 (friction_scale 1.5) begins 0 s from now'),
+            ('force_pulse --value -20 --start 60 --duration 2 --id a', 'a (force_pulse -20) begins 60 s from now'),
+            ('drive_freeze --start 60 --id b', 'b (drive_freeze) begins 60 s from now'),
+            ('encoder_dropout --value 0.5 --id c',
+             'c (encoder_dropout 0.5) begins 0 s from now; encoder_dropout does nothing: no encoder is read; '
+             'set joint_interface.enabled: true')):
+        assert said(capsys, 'inject-fault', *words.split()) == f'{answer}\n'
+    for fault in ('c', 'b'):
+        assert said(capsys, 'clear-faults', fault) == f'{fault} cleared\n'
+    assert said(capsys, 'clear-faults') == 'cleared: friction_scale_1, a\n'
+    assert "kind = 'friction' is refused" in refusal(capsys, 'inject-fault', 'friction')
+    assert refusal(capsys, 'inject-fault', 'friction_scale') == (    # 0 would be a friction that is gone
+        'stickslip: --value is missing: must be given with friction_scale: a factor, >= 0 and <= 100; add --value X\n')
+    assert 'force_pulse: within ±1e9 N' in refusal(capsys, 'inject-fault', 'force_pulse')
 
 
 def test_parameters(folder: Path, capsys: Capture) -> None:
     assert said(capsys, 'set', 'axis.mass=300', 'command.max_velocity=0.5') == 'set: axis.mass, command.max_velocity\n'
-    assert 'axis.mass = -1' in refused(capsys, 'call', 'set', 'axis.mass=-1', '--node', AXIS)
-    assert 'solver.name' in refused(capsys, 'call', 'set', 'axis.mass=350', 'solver.name=fixed_step', '--node', AXIS)
-    assert 'must be A.B=VALUE' in refused(capsys, 'call', 'set', 'axis.mass', '--node', AXIS)
+    assert 'axis.mass = -1' in refusal(capsys, 'set', 'axis.mass=-1')
+    assert 'solver.name' in refusal(capsys, 'set', 'axis.mass=350', 'solver.name=fixed_step')
+    assert 'must be A.B=VALUE' in refusal(capsys, 'set', 'axis.mass')
     assert said(capsys, 'set', 'axis.mass=350', 'command.max_velocity=1') == 'set: axis.mass, command.max_velocity\n'
-
-
-def test_a_fault_without_the_value_that_its_kind_needs(capsys: Capture) -> None:
-    """0 would be a friction that is gone."""
-    assert refused(capsys, 'call', 'inject-fault', 'friction_scale') == (
-        'stickslip: --value is missing: must be given with friction_scale: a factor, >= 0 and <= 100;'
-        ' add --value X\n')
-    assert 'force_pulse: within ±1e9 N' in refused(capsys, 'call', 'inject-fault', 'force_pulse')
 
 
 def test_nobody_answers(folder: Path, capsys: Capture) -> None:
@@ -107,15 +109,12 @@ def test_two_of_one_name(folder: Path, tmp_path: Path, capsys: Capture) -> None:
 
     A call may have heard of one node only when it is made: then the other does not hear of it.
     """
-    def refusal() -> str:
-        return refused(capsys, 'call', 'step', '--node', AXIS)    # of any: time runs by itself
-
-    with running('-r', '__ns:=/cell', folder=tmp_path):
-        assert wait_for(lambda: 'two nodes' in (line := refusal()) and line, 'both').startswith(
+    with running('time.rate:=200.0', '-r', '__ns:=/cell', folder=tmp_path):
+        assert wait_for(lambda: 'two nodes' in (line := refusal(capsys, 'step')) and line, 'both').startswith(
             f"stickslip: --node = '{AXIS}' is refused: must be the name of one node; two nodes named {AXIS} answer")
-        afresh = [tool('call', 'step', '--node', AXIS, **NO_PROFILES).stderr for _ in range(8)]
-        assert sum('two nodes' in line for line in afresh) >= 4    # 19 of 20; 5 where the second was greeted once
-    assert 'refused while time runs by itself' in refusal()    # it was killed
+        afresh = [tool('call', 'step', '--node', AXIS, **NO_PROFILES).stderr for _ in range(6)]
+        assert sum('two nodes' in line for line in afresh) >= 4    # 19 of 20; 5 of 20 where the second was greeted once
+    assert 'refused while time runs by itself' in refusal(capsys, 'step')    # it was killed
 
 
 def test_wrong_use(capsys: Capture) -> None:
@@ -129,3 +128,77 @@ def test_without_a_workspace() -> None:
     assert (done.returncode, done.stdout) == (2, '')
     assert done.stderr == ("stickslip: AMENT_PREFIX_PATH = '' is refused: must be that of a ROS 2 workspace; source its"
                            ' setup.bash\n')
+
+
+class Axis(NamedTuple):
+    process: NodeProcess
+    client: Client
+
+    def let_pass(self, steps: int) -> None:
+        step = self.client.latest('slider_state').step
+        self.client.next('slider_state', lambda state: state.step > step + steps)
+
+    @property
+    def neighbours(self) -> str:
+        """What it says next of its neighbours; both axes say theirs on /diagnostics."""
+        name = f'{self.client.node.get_namespace()}/feed_axis: neighbours'
+
+        def found(message: Any) -> list[str]:
+            return [status.message for status in message.status if status.name == name]
+
+        text, = found(self.client.next('/diagnostics', lambda message: bool(found(message))))
+        return text
+
+
+@contextmanager
+def two_axes(folder: Path, **arguments: str) -> Iterator[tuple[Axis, Axis]]:
+    """Start both at once, in one folder, as axes.launch.py does, and wait for them."""
+    at_rest = 'drive.course:=constant drive.velocity:=0.0'
+    with ExitStack() as stack:
+        processes = [stack.enter_context(running(*started.words, folder=folder))
+                     for started in launched('axes', parameters=at_rest, rate='200', **arguments).processes]
+        x, y = (Axis(process, stack.enter_context(client(namespace)))
+                for process, namespace in zip(processes, ('/x', '/y'), strict=True))
+        for axis in (x, y):
+            axis.client.connect()
+        yield x, y
+
+
+class TestTwoAxes:
+    def test_what_is_said_to_one_does_not_reach_the_other(self, tmp_path: Path) -> None:
+        """They begin in the same second, in the same folder; a prefix each, as one robot description needs it."""
+        with two_axes(tmp_path, joints='/joint_states', record='true') as (x, y):
+            names: set[tuple[str, ...]] = set()
+            x.client.node.create_subscription(JointState, '/joint_states', lambda heard: names.add(tuple(heard.name)),
+                                              10)
+            both = {(f'{prefix}axis_slider', f'{prefix}axis_drive') for prefix in ('x_', 'y_')}
+            wait_for(lambda: names == both, 'the joints of both')
+            x.client.send_velocity(0.004)
+            x.client.next('slider_state', lambda state: state.position > 1e-4)
+            y.let_pass(100)
+            assert {(state.drive_velocity, state.position) for state in y.client.heard['slider_state']} == {(0.0, 0.0)}
+            y.client.send_force(100.0)
+            y.client.next('slider_state', lambda state: state.position > 0.0)
+            assert x.client.latest('slider_state').drive_velocity == 0.004
+            assert x.client.set_parameters(axis__normal_force=2000.0).successful
+            assert [axis.client.values('axis.normal_force')[0].double_value for axis in (x, y)] == [2000.0, 3432.3275]
+            for axis in (x, y):
+                assert axis.neighbours == 'nobody in the way'
+                assert_clean(*axis.process.end())
+        folders = sorted((tmp_path / 'runs').iterdir())
+        assert [folder.name[:14] for folder in folders] == ['x_positioning_', 'y_positioning_']
+        runs = {name: open_bag(folder) for name, folder in zip('xy', folders)}
+        assert [{topic.split('/')[1] for topic in run.topics} for run in runs.values()] == [
+            {name, 'parameter_events'} for name in runs]
+        assert [run.counts[f'/{name}/drive_velocity'] for name, run in runs.items()] == [1, 0]
+
+    def test_each_has_its_clock(self, tmp_path: Path) -> None:
+        with two_axes(tmp_path, mode='free_run') as (x, y):
+            times: list[int] = []
+            x.client.node.create_subscription(Clock, '/y/clock', lambda clock: times.append(clock.clock.sec), 10)
+            answer = x.client.switch('set_paused', True)
+            assert answer.success
+            wait_for(lambda: times and times[-1] > times[0], 'the clock of y while x is paused')
+            assert answer.message == f'paused at simulation time {x.client.latest("slider_state").step / 200:g} s'
+            assert [x.client.node.count_publishers(topic) for topic in ('/clock', '/x/clock', '/y/clock')] == [0, 1, 1]
+            assert {axis.neighbours for axis in (x, y)} == {'nobody in the way'}

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A process that stands still in the middleware ends; where Fast DDS uses no shared memory, it does not."""
+"""What ends by itself: a process that stands still in the middleware, and one with a defect of its own."""
 
 import ctypes
 import os
@@ -9,17 +9,22 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
+from importlib import import_module
 from pathlib import Path
 
 import pytest
+from rclpy.node import Node
 
 from stickslip_sim.core.errors import RecordingWarning
-from stickslip_sim.recording import open_bag
+from stickslip_sim.recording import open_bag, write_bag
+from stickslip_sim.ros import standstill
+from tests.support.forked_programs import ros_args
+from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running
+from tests.support.recorded_runs import FACTS, samples
+from tests.support.ros_nodes import client, live_axis
 from tests.support.tool import restore_interrupt, tool
 from tests.support.waiting import wait_for
-
-from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running  # isort: skip  # skips without ROS
-from tests.support.ros_nodes import client  # isort: skip
 
 pytestmark = pytest.mark.ros
 
@@ -42,16 +47,12 @@ def never_destroyed(*_: object) -> None:
 
 def impatient() -> None:
     """For `prepare`."""
-    from stickslip_sim.ros import standstill
-
     restore_interrupt()
     standstill.GRACE = 3.0
 
 
 def with_a_middleware_that_does_not_end() -> None:
     """For `prepare`."""
-    from rclpy.node import Node
-
     impatient()
     Node.destroy_node = never_destroyed
 
@@ -158,24 +159,18 @@ def test_without_shared_memory_a_half_made_port_is_nothing(half_made: Callable[[
     """As `make run` and `make test` have it."""
     for port in ports().values():
         half_made(port)
-    with running(prepare=impatient) as process, client() as axis:
-        axis.connect()
+    with live_axis(prepare=impatient) as (process, _):
         maps = Path(f'/proc/{process.pid}/maps').read_text()
-        code, errors = process.end()
-    assert code == 0, errors
     assert f'{MEMORY}/fast' not in maps
 
 
 def test_time_in_which_a_node_is_stopped_does_not_count() -> None:
-    with running(prepare=impatient) as process, client() as axis:
-        axis.connect()
+    with live_axis(prepare=impatient) as (process, axis):
         process.send(signal.SIGSTOP)
         time.sleep(4.5)
         process.send(signal.SIGCONT)
         axis.next('slider_state')
         time.sleep(3.5)    # in which it would have ended
-        code, errors = process.end()
-    assert code == 0, errors
 
 
 @pytest.mark.parametrize(('prepare', 'reported'), [
@@ -192,3 +187,76 @@ def test_a_node_ends_whose_middleware_does_not(prepare: Callable[[], None], repo
     assert reported in errors
     assert 'in never_destroyed' in errors
     assert open_bag(bag).is_complete
+
+
+PLACES = {    # a method of stickslip_sim, and the program that calls it in this thread
+    'step loop': ('simulation.rig', 'Rig', 'make_step', 'sim_node'),
+    'player': ('ros.replay.states', 'States', 'acts', 'replay_node'),
+    'executor': ('ros.node.periodic_report', 'PeriodicReport', 'report', 'sim_node'),
+}
+
+
+def broken(*_: object) -> None:
+    raise ZeroDivisionError('first\nsecond')
+
+
+def break_method(module: str, owner: str, method: str) -> None:
+    """Let a method raise an error of two lines: for `prepare`, with its arguments."""
+    restore_interrupt()
+    setattr(getattr(import_module(f'stickslip_sim.{module}'), owner), method, broken)
+
+
+@pytest.mark.parametrize('place', PLACES)
+def test_a_defect_is_reported_and_shown_where(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str) -> None:
+    write_bag(tmp_path / 'run', FACTS, samples(3), [], {})
+    *method, program = PLACES[place]
+    bag = [f'bag:={tmp_path}/run'] if place == 'player' else []
+
+    def errors() -> list[str]:
+        with running(*bag, program=program, folder=tmp_path, prepare=partial(break_method, *method)) as process:
+            code, errors = process.wait()
+        assert code == 1, errors
+        return errors.splitlines()
+
+    monkeypatch.setenv('STICKSLIP_DEBUG', '0')
+    *before, line = errors()
+    assert not any('Traceback' in text for text in before)
+    assert line == f'{program}: internal error: ZeroDivisionError: first (STICKSLIP_DEBUG=1 shows where)'
+    monkeypatch.setenv('STICKSLIP_DEBUG', '1')
+    shown = errors()
+    assert 'Traceback (most recent call last):' in shown
+    assert any(text.endswith('in broken') for text in shown)
+    assert shown[-2:] == ['ZeroDivisionError: first', 'second']
+
+
+CORRUPTED = """
+import sys
+from stickslip_sim.ros.executables import sim_node
+from stickslip_sim.solvers import exact, with_advance
+
+done = []
+
+def corrupted(p, s, second, fraction, *arguments):
+    if not done and fraction > 0.005:
+        done.append(True)
+        s.stored_at_start += 1e3      # J that the run never had
+    return exact.advance(p, s, second, fraction, *arguments)
+
+exact.SOLVER = with_advance(exact.SOLVER, corrupted)
+sys.exit(sim_node(sys.argv[1:]))
+"""
+
+
+def test_a_run_that_contradicts_itself_stands_still(tmp_path: Path) -> None:
+    """The check of runs finds it at the next event; the node says so and waits, and its bag is whole."""
+    with subprocess.Popen([sys.executable, '-c', CORRUPTED, *ros_args(*recording_into(tmp_path / 'run'))],
+                          stderr=subprocess.PIPE, text=True) as node:
+        assert node.stderr is not None
+        line = next(line for line in node.stderr if 'stands still' in line)
+        node.send_signal(signal.SIGINT)
+        node.stderr.read()
+        assert node.wait(60) == 0
+    assert 'the run contradicts its own motion or balance of energy at t = ' in line
+    bag = open_bag(tmp_path / 'run')
+    assert bag.is_complete
+    assert len(list(bag.messages(['/slider_state']))) > 5

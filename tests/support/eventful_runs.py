@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from tests.support.node_processes import assert_clean, recording_into, running
-from tests.support.ros_nodes import Client, client
+from tests.support.node_processes import recording_into
+from tests.support.ros_nodes import Client, live_axis
 from tests.support.waiting import wait_for
 
 from stickslip_msgs.srv import InjectFault  # isort: skip
@@ -17,8 +17,7 @@ from stickslip_msgs.srv import InjectFault  # isort: skip
 @contextmanager
 def eventful_run(folder: Path, *arguments: str) -> Iterator[Client]:
     """Record commands, faults, changed parameters and transitions; let the caller look before the bag is closed."""
-    with running(*recording_into(folder), *arguments) as process, client() as axis:
-        axis.connect()
+    with live_axis(*recording_into(folder), *arguments) as (_, axis):
         for velocity in (0.004, -0.003, 0.002):
             axis.send_velocity(velocity)
             wait_for(partial(_follows, axis, velocity), 'the command in force')
@@ -35,7 +34,6 @@ def eventful_run(folder: Path, *arguments: str) -> Iterator[Client]:
         axis.send_force(0.0)
         axis.next('timing')
         yield axis
-        assert_clean(*process.end())
 
 
 def _follows(axis: Client, velocity: float) -> bool:

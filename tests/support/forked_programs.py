@@ -104,9 +104,16 @@ class ForkedProgram:
         return None, self._said
 
 
-def ended_at_once(program: str, *arguments: str | Path) -> tuple[int, str]:
+def ros_args(*words: str | Path) -> list[str]:
+    """Return words behind --ros-args, with a -p before each NAME:=VALUE that has no option before it."""
+    texts = ['--ros-args', *map(str, words)]
+    return [part for before, word in zip(['', *texts], texts)
+            for part in (['-p', word] if ':=' in word and before not in ('-p', '-r') else [word])]
+
+
+def ended_at_once(program: str, *words: str | Path) -> tuple[int, str]:
     """Return the exit code of a program that is to end at once, and what it wrote on standard error."""
-    process = ForkedProgram(program, *map(str, arguments))
+    process = ForkedProgram(program, *ros_args(*words))
     try:
         _, errors = process.communicate(DEADLINE)
     except subprocess.TimeoutExpired:    # it goes on
@@ -115,3 +122,12 @@ def ended_at_once(program: str, *arguments: str | Path) -> tuple[int, str]:
     code = process.poll()
     assert code is not None
     return code, errors
+
+
+def refusal_of(program: str, *words: str | Path) -> str:
+    """Return the one line in which a program refuses to start."""
+    code, errors = ended_at_once(program, *words)
+    assert code == 2, errors
+    line, = errors.splitlines()
+    assert line.startswith(f'{program}: '), line
+    return line

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.busy_machine import CoreWaits
-from tests.support.forked_programs import ForkedProgram
+from tests.support.forked_programs import ForkedProgram, ros_args
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE
 
@@ -35,7 +35,7 @@ def executable(name: str) -> str:
 
 def recording_into(folder: Path) -> list[str]:
     """Return the arguments of a node that records from the start."""
-    return ['-p', 'record.enabled:=true', '-p', f'record.folder:={folder}']
+    return ['record.enabled:=true', f'record.folder:={folder}']
 
 
 def with_small_files() -> None:
@@ -48,17 +48,20 @@ class NodeProcess:
     """A program with default signal handling, in a process group of its own, as a terminal starts it.
 
     It is forked, which costs a quarter as much, unless it is to start `afresh`, as a user starts the installed script.
+    Once it was waited for, `code` and `errors` are its exit code and standard error.
     """
 
-    def __init__(self, *ros_args: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
+    def __init__(self, *words: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
                  program: str = 'sim_node', afresh: bool = False) -> None:
         self._process: ForkedProgram | subprocess.Popen[str]
+        self.code: int | None = None
+        self.errors = ''
         if afresh:
             self._process = subprocess.Popen(
-                [executable(program), '--ros-args', *ros_args], cwd=folder, stderr=subprocess.PIPE, text=True,
+                [executable(program), *ros_args(*words)], cwd=folder, stderr=subprocess.PIPE, text=True,
                 start_new_session=True, preexec_fn=prepare)
         else:
-            self._process = ForkedProgram(program, '--ros-args', *ros_args, folder=folder, prepare=prepare)
+            self._process = ForkedProgram(program, *ros_args(*words), folder=folder, prepare=prepare)
         self.pid = self._process.pid
         self.waits = CoreWaits(self.pid)
 
@@ -69,13 +72,13 @@ class NodeProcess:
     def wait(self) -> tuple[int, str]:
         """Return the exit code and standard error."""
         try:
-            _, errors = self._process.communicate(timeout=DEADLINE)
+            _, self.errors = self._process.communicate(timeout=DEADLINE)
         except subprocess.TimeoutExpired:
             self._process.kill()
             raise
-        code = self._process.poll()
-        assert code is not None
-        return code, errors
+        self.code = self._process.poll()
+        assert self.code is not None
+        return self.code, self.errors
 
     def end(self, number: int = signal.SIGINT) -> tuple[int, str]:
         self.send(number)
@@ -86,6 +89,7 @@ class NodeProcess:
             self.waits.look()
             self._process.kill()
             print(self._process.communicate()[1])    # what it had to say, for the report of a test that failed
+            self.code = self._process.poll()
 
 
 def assert_clean(code: int, errors: str) -> None:
@@ -96,9 +100,9 @@ def assert_clean(code: int, errors: str) -> None:
 
 
 @contextmanager
-def running(*ros_args: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
+def running(*words: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
             program: str = 'sim_node', afresh: bool = False) -> Iterator[NodeProcess]:
-    process = NodeProcess(*ros_args, folder=folder, prepare=prepare, program=program, afresh=afresh)
+    process = NodeProcess(*words, folder=folder, prepare=prepare, program=program, afresh=afresh)
     try:
         yield process
     finally:

@@ -1,15 +1,20 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Rigs without ROS, and orders for them by step, which can be given again."""
+"""Rigs without ROS, and orders for them by step, which can be given again: also those of a recorded run."""
 
 import random
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from stickslip_sim.axis import Axis, InitialState
 from stickslip_sim.core.input_profile import InputProfile, constant
 from stickslip_sim.core.time_grid import Grid
+from stickslip_sim.recording import Bag
+from stickslip_sim.scene import Scene, scene_from_values
 from stickslip_sim.simulation import Fault, Rig, RigEventKind, StepResult
 from stickslip_sim.simulation.faults import RULES
 from stickslip_sim.simulation.rig import RigSettings
@@ -109,3 +114,75 @@ def _random_order(stream: random.Random) -> Order:
         force(push), lambda rig: rig.inject(fault),
         lambda rig: rig.change_axis(replace(AXIS, mass=mass)), lambda rig: rig.time_out(0.5),
         lambda rig: rig.clear_faults()])
+
+
+FIELDS = ('time', 'position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force',
+          'rest_time', 'mode', 'direction')
+
+
+def orders_of(recorded: Bag, scene: Scene) -> Script:
+    """Return the orders of a bag, by the step before which they came."""
+    orders: dict[int, list[Order]] = defaultdict(list)
+    values = dict(scene.values)
+    for message in recorded.messages(['/drive_velocity', '/external_force', '/parameter_events', '/rig_event']):
+        content = recorded.decode(message)
+        if message.topic == '/parameter_events':
+            values |= {changed.name: changed.value.double_value for changed in content.changed_parameters}
+            orders[message.sequence].append(_change(scene_from_values(values)))
+        elif message.topic == '/rig_event':
+            orders[message.sequence] += _of_event(content)
+        else:
+            orders[message.sequence].append(_command(content))
+    return orders
+
+
+def made_again(recorded: Bag, scene: Scene) -> list[StepResult]:
+    """Return what a rig makes of the orders of a bag, over as many steps."""
+    return run(scene.make_rig(), recorded.counts['/slider_state'], orders_of(recorded, scene))
+
+
+def assert_same_states(recorded: Bag, results: list[StepResult]) -> None:
+    """Compare the states of a bag with those of a rig, bit by bit."""
+    states = recorded.columns('/slider_state')
+    assert list(states['step']) == [result.step for result in results]
+    for name in FIELDS:
+        ours = np.array([getattr(result.sample, name) for result in results])
+        np.testing.assert_array_equal(states[name], ours, err_msg=name)
+
+
+def rig_events_in(recorded: Bag, *kinds: RigEventKind) -> list[Any]:
+    """Return the rig events of some kinds in a bag."""
+    return [event for event in map(recorded.decode, recorded.messages(['/rig_event'])) if event.kind in kinds]
+
+
+def _command(message: Any) -> Order:
+    if hasattr(message, 'velocity'):
+        return velocity(message.velocity)
+    return force(message.force)
+
+
+def _change(scene: Scene) -> Order:
+    return lambda rig: rig.change_axis(scene.axis)
+
+
+def _of_event(event: Any) -> list[Order]:
+    if event.kind == RigEventKind.FAULT_INJECTED:
+        return [lambda rig: rig.inject(Fault(event.id, event.fault, event.start, event.duration, event.value))]
+    if event.kind == RigEventKind.FAULT_CLEARED:
+        return [lambda rig: rig.clear_fault(event.id)]
+    if event.kind == RigEventKind.COMMAND_TIMEOUT:
+        return [lambda rig: rig.time_out(event.value)]
+    return []
+
+
+class FakeClock:
+    """Time that passes only when somebody sleeps or says so."""
+
+    def __init__(self) -> None:
+        self.time = 5_000_000_000
+
+    def now(self) -> int:
+        return self.time
+
+    def sleep(self, seconds: float) -> None:
+        self.time += round(seconds * 1e9)

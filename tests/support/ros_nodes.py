@@ -9,7 +9,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -245,9 +244,23 @@ def client(namespace: str = '/') -> Iterator[Client]:
 
 
 @contextmanager
-def node_and_client(folder: Path, mode: str, *ros_args: str) -> Iterator[tuple[NodeProcess, Client]]:
-    """Run a node in a mode of time, connected; it ends clean."""
-    with running('-p', f'time.mode:={mode}', *ros_args, folder=folder) as process, client() as axis:
-        axis.connect(is_moving=mode != 'lockstep')
+def bare_nodes(*names: str, kind: Any = Node) -> Iterator[list[Any]]:
+    """Make nodes of a context of their own; nothing spins."""
+    context = Context()
+    rclpy.init(context=context)
+    nodes = [kind(name, context=context) for name in names]
+    yield nodes
+    for node in nodes:
+        node.destroy_node()
+    context.try_shutdown()
+
+
+@contextmanager
+def live_axis(*words: str, namespace: str = '/', **options: Any) -> Iterator[tuple[NodeProcess, Client]]:
+    """Run a node beside a client that it knows; it ends clean, unless the caller has waited for its end."""
+    where = [] if namespace == '/' else ['-r', f'__ns:={namespace}']
+    with running(*words, *where, **options) as process, client(namespace) as axis:
+        axis.connect(is_moving='time.mode:=lockstep' not in words)
         yield process, axis
-        assert_clean(*process.end())
+        if process.code is None:
+            assert_clean(*process.end())

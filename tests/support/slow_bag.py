@@ -11,6 +11,7 @@ from stickslip_sim.recording import open_run, recordings
 from stickslip_sim.ros import executables
 from stickslip_sim.ros.node.publishers import Publishers
 from stickslip_sim.ros.stop_signals import Signals
+from tests.support.forked_programs import ros_args
 
 SIGNALS = Signals()
 LAGS: list[int] = []
@@ -30,6 +31,6 @@ if __name__ == '__main__':
     recordings.open_run = slow_open_run    # type: ignore[assignment, attr-defined]
     Publishers.sample = sample             # type: ignore[assignment, method-assign]
     executables.Signals = lambda: SIGNALS  # type: ignore[assignment, attr-defined]
-    code = executables.sim_node(['--ros-args', *sys.argv[1:]])
+    code = executables.sim_node(ros_args(*sys.argv[1:]))
     print(min(LAGS) * 1e-9)
     sys.exit(code)

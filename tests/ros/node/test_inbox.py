@@ -1,20 +1,27 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The step loop takes commands from the middleware by itself: which, in which order, and when they arrived."""
+"""What the step loop takes from the middleware, and when a message is made."""
 
 import itertools
 import time
 from collections.abc import Iterator
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from sensor_msgs.msg import JointState
 
+from stickslip_msgs.msg import DriveVelocity, ExternalForce, SliderState
 from stickslip_sim.bags import topics
+from stickslip_sim.core.types import Mode
 from stickslip_sim.realtime.commands import CommandSlot
-from tests.support.node_processes import running
-from tests.support.ros_nodes import client, rclpy
+from stickslip_sim.recording.messages import Packer
+from stickslip_sim.ros.node.endpoints import publisher
+from stickslip_sim.ros.node.joints import JointNames
+from stickslip_sim.ros.node.publishers import Publishers
+from stickslip_sim.ros.node.subscribers import Subscribers, trouble
+from tests.support.rigs import make
+from tests.support.ros_nodes import bare_nodes, live_axis
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros
@@ -23,15 +30,8 @@ pytestmark = pytest.mark.ros
 class NodePair:
     """Subscribers in one node, publishers in another; nothing spins."""
 
-    def __init__(self) -> None:
-        from rclpy.context import Context
-
-        from stickslip_sim.ros.node.endpoints import publisher
-        from stickslip_sim.ros.node.joints import JointNames
-        from stickslip_sim.ros.node.subscribers import Subscribers
-        self.context = Context()
-        rclpy.init(context=self.context)
-        self.node, self.sender = (rclpy.create_node(name, context=self.context) for name in ('inbox', 'sender'))
+    def __init__(self, node: Any, sender: Any) -> None:
+        self.node, self.sender = node, sender
         self.velocity = CommandSlot('velocity', 'm/s', 1.0)
         self.warnings: list[str] = []
         self.subscribers = Subscribers(self.node, self.velocity, CommandSlot('force', 'N', 1e5), time.monotonic_ns,
@@ -45,7 +45,6 @@ class NodePair:
         self.warnings.append(text)
 
     def send(self, *velocities: float) -> None:
-        from stickslip_msgs.msg import DriveVelocity
         for velocity in velocities:
             self.velocities.publish(DriveVelocity(velocity=velocity))
 
@@ -54,23 +53,14 @@ class NodePair:
         self.subscribers.hear()
         return self.velocity.received >= count
 
-    def close(self) -> None:
-        self.node.destroy_node()
-        self.sender.destroy_node()
-        self.context.try_shutdown()
-
-
 @pytest.fixture
 def pair() -> Iterator[NodePair]:
-    pair = NodePair()
-    yield pair
-    pair.close()
+    with bare_nodes('inbox', 'sender') as nodes:
+        yield NodePair(*nodes)
 
 
 def settle(pair: NodePair) -> None:
     """Wait until all that was sent has been received, without taking it: a later message on a topic unheard."""
-    from stickslip_msgs.msg import ExternalForce
-    from stickslip_sim.ros.node.endpoints import publisher
     out = publisher(pair.sender, topics.EXTERNAL_FORCE)
     wait_for(out.get_subscription_count, 'the inbox')
     force = pair.subscribers.hidden[1].handle
@@ -109,7 +99,6 @@ def test_arrival_is_when_the_middleware_received_it_not_when_it_was_taken(pair: 
 
 
 def test_of_two_topics_the_command_that_arrived_last_counts(pair: NodePair) -> None:
-    from sensor_msgs.msg import JointState
     pair.joints.publish(JointState(name=['axis_drive'], velocity=[0.5]))
     settle(pair)
     pair.send(0.1)
@@ -169,7 +158,6 @@ def test_a_node_that_comes_down_hears_nothing(pair: NodePair) -> None:
 
 
 def test_an_rclpy_that_takes_messages_otherwise_is_noticed(pair: NodePair) -> None:
-    from stickslip_sim.ros.node.subscribers import trouble
 
     class Handle:
         """One whose method wants other arguments."""
@@ -187,19 +175,66 @@ def test_an_rclpy_that_takes_messages_otherwise_is_noticed(pair: NodePair) -> No
     assert 'another way to take messages' in trouble(other)
 
 
-def test_callbacks_hear_where_the_loop_may_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_callbacks_hear_where_the_loop_may_not(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv('STICKSLIP_COMMANDS', 'callbacks')
-    with running(folder=tmp_path) as process:
-        with client() as axis:
-            axis.connect()
+    with live_axis() as (process, axis):
+        def obeys() -> bool:
+            axis.send_velocity(0.004)
+            return bool(axis.latest('slider_state').drive_velocity == 0.004)
 
-            def obeys() -> bool:
-                axis.send_velocity(0.004)
-                return bool(axis.latest('slider_state').drive_velocity == 0.004)
+        wait_for(obeys, 'an axis that hears')
+        axis.send_velocity(5.0)
+        axis.next('timing', lambda timing: timing.total_refused == 1 and timing.latency_p50 > 0.0)
+    assert 'commands are heard by callbacks: STICKSLIP_COMMANDS=callbacks' in process.errors
 
-            wait_for(obeys, 'an axis that hears')
-            axis.send_velocity(5.0)
-            axis.next('timing', lambda timing: timing.total_refused == 1 and timing.latency_p50 > 0.0)
-        code, errors = process.end()
-    assert code == 0
-    assert 'commands are heard by callbacks: STICKSLIP_COMMANDS=callbacks' in errors
+
+@pytest.fixture
+def node() -> Iterator[Any]:
+    with bare_nodes('publishers') as (it,):
+        yield it
+
+
+class Recorder:
+    """Takes messages, and forgets them."""
+
+    def __init__(self) -> None:
+        self.taken = 0
+
+    def put(self, *_: object) -> None:
+        self.taken += 1
+
+    def wait_for_room(self) -> None:
+        pass
+
+
+def test_nothing_is_packed_for_nobody(node: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    packed: list[int] = []
+    pack = Packer.pack
+
+    def counted(self: Packer, *given: Any) -> bytes:
+        packed.append(1)
+        return pack(self, *given)
+
+    monkeypatch.setattr(Packer, 'pack', counted)
+    publishers, rig = Publishers(node, lambda: 0), make()
+    publishers.begin_run(0, Mode.STICK)
+    publishers.take(rig.make_step())
+    assert packed == []
+    recorder = Recorder()
+    publishers.recorder = recorder
+    publishers.take(rig.make_step())
+    assert (len(packed), recorder.taken) == (2, 2)    # the state and the friction force
+    publishers.recorder = None
+    heard: list[Any] = []
+    subscription = node.create_subscription(SliderState, 'slider_state', heard.append, 10)
+    wait_for(lambda: node.count_publishers('slider_state') and subscription.get_publisher_count(), 'the publisher')
+
+    def is_packed() -> bool:
+        publishers.take(rig.make_step())
+        return len(packed) > 2
+
+    wait_for(is_packed, 'a message for the one who hears')
+    with subscription.handle:
+        state, _ = wait_for(lambda: subscription.handle.take_message(SliderState, False), 'the state')
+    assert state.step >= 2
+    assert len(packed) == 3    # and none of the friction force

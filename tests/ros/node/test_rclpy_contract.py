@@ -12,25 +12,23 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import rclpy.node
+from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.experimental import EventsExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.serialization import deserialize_message
+from std_msgs.msg import Float64
 
 import stickslip_sim
+from stickslip_sim.ros.node.parameters import _REQUEST_LISTS
+from stickslip_sim.ros.node.subscribers import HidingNode, Inbox
+from tests.support.ros_nodes import bare_nodes
 from tests.support.waiting import wait_for
 
-rclpy = pytest.importorskip('rclpy')
-
-from rcl_interfaces.srv import GetParameters, SetParameters, SetParametersAtomically  # noqa: E402
-from rclpy.context import Context  # noqa: E402
-from rclpy.executors import SingleThreadedExecutor  # noqa: E402
-from rclpy.experimental import EventsExecutor  # noqa: E402
-from rclpy.node import Node  # noqa: E402
-from rclpy.parameter import Parameter  # noqa: E402
-from rclpy.serialization import deserialize_message  # noqa: E402
-from std_msgs.msg import Float64  # noqa: E402
-
-from stickslip_sim.ros.node.subscribers import HidingNode, Inbox  # noqa: E402
-
-# lark, which rosidl's Python brings in, imports modules that Python wants to rename.
-pytestmark = [pytest.mark.ros, pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")]
+pytestmark = pytest.mark.ros
 
 PACKAGE = Path(stickslip_sim.__file__).parent
 INBOX, BOUNDED, PROGRAM = 'ros/node/subscribers.py', 'ros/node/parameters.py', 'ros/programs.py'
@@ -47,11 +45,8 @@ SETTING = 'rclpy serves parameters past the method of the node: see ros/node/par
 class Pair:
     """A node with two subscriptions, one of them hidden, and a node that sends to both."""
 
-    def __init__(self) -> None:
-        self.context = Context()
-        rclpy.init(context=self.context)
-        self.node, self.sender = (kind(name, context=self.context) for kind, name in (
-            (HidingNode, 'hears'), (Node, 'sends')))
+    def __init__(self, node: Any, sender: Any) -> None:
+        self.node, self.sender, self.context = node, sender, node.context
         self.served: list[str] = []
         self.hidden, _ = (
             self.node.create_subscription(Float64, name, lambda _, name=name: self.served.append(name), 10, raw=True)
@@ -69,17 +64,10 @@ class Pair:
 
         return wait_for(taken, 'a message')
 
-    def close(self) -> None:
-        self.node.destroy_node()
-        self.sender.destroy_node()
-        self.context.try_shutdown()
-
-
 @pytest.fixture
 def pair() -> Iterator[Pair]:
-    pair = Pair()
-    yield pair
-    pair.close()
+    with bare_nodes('hears', 'sends', kind=HidingNode) as nodes:
+        yield Pair(*nodes)
 
 
 class TestTakingMessages:
@@ -127,10 +115,10 @@ def test_executors_leave_a_hidden_subscription_alone(pair: Pair, kind: Any) -> N
 class Recording(Node):  # type: ignore[misc]
     """A node that notes which of its methods rclpy calls for its own services."""
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, name: str, context: Context) -> None:
         self.offered: dict[str, Any] = {}
         self.called: list[str] = []
-        super().__init__('notes', context=context)
+        super().__init__(name, context=context)
         self.declare_parameter('gain', 1.0)
         self.called.clear()
 
@@ -150,12 +138,8 @@ class Recording(Node):  # type: ignore[misc]
 class TestParameterServices:
     @pytest.fixture
     def node(self) -> Iterator[Recording]:
-        context = Context()
-        rclpy.init(context=context)
-        node = Recording(context)
-        yield node
-        node.destroy_node()
-        context.try_shutdown()
+        with bare_nodes('notes', kind=Recording) as (node,):
+            yield node
 
     def test_are_made_by_create_service(self, node: Recording) -> None:
         assert set(node.offered) >= {
@@ -176,7 +160,6 @@ class TestParameterServices:
         assert node.called == [method], SETTING
 
     def test_a_request_has_one_of_the_lists_that_are_bounded(self) -> None:
-        from stickslip_sim.ros.node.parameters import _REQUEST_LISTS
         for kind in (GetParameters, SetParameters, SetParametersAtomically):
             assert set(_REQUEST_LISTS) & set(kind.Request.get_fields_and_field_types()), SERVING
 
@@ -198,9 +181,8 @@ def used(tree: ast.AST) -> Iterator[str]:
 
 def overridden(tree: ast.AST) -> set[str]:
     """Return the methods of our nodes that rclpy's Node has, public or not, but the constructor."""
-    return {part.name for node in ast.walk(tree) if isinstance(node, ast.ClassDef)
-            and any('Node' in ast.unparse(base) for base in node.bases)
-            for part in node.body if isinstance(part, ast.FunctionDef) and hasattr(Node, part.name)} - {'__init__'}
+    return {part.name for ours in nodes(tree) for part in ours.body
+            if isinstance(part, ast.FunctionDef) and hasattr(Node, part.name)} - {'__init__'}
 
 
 def is_undocumented(name: str) -> bool:
@@ -218,3 +200,24 @@ def test_each_undocumented_name_stands_in_one_file() -> None:
         for name in {*filter(is_undocumented, used(tree)), *(overridden(tree) & {'subscriptions', 'create_service'})}:
             places.setdefault(name, set()).add(file)
     assert places == {name: {file} for name, file in PLACES.items()}
+
+
+def attributes(tree: ast.AST) -> set[str]:
+    """Return what is set or read of `self` or a parent class, and the names of the methods."""
+    return {part.attr for part in ast.walk(tree) if isinstance(part, ast.Attribute)
+            and ast.unparse(part.value) in ('self', 'super()')} | {
+        part.name for part in ast.walk(tree) if isinstance(part, ast.FunctionDef)}
+
+
+def nodes(tree: ast.AST) -> list[ast.ClassDef]:
+    """Return our classes whose base has Node in its name."""
+    return [part for part in ast.walk(tree) if isinstance(part, ast.ClassDef)
+            and any('Node' in ast.unparse(base) for base in part.bases)]
+
+
+@pytest.mark.parametrize('ours', [ours for _, tree in trees() for ours in nodes(tree)], ids=lambda ours: ours.name)
+def test_nothing_private_to_rclpy_is_touched(ours: ast.ClassDef) -> None:
+    theirs = attributes(ast.parse(Path(rclpy.node.__file__).read_text(encoding='utf-8')))
+    private = {name for name in theirs if name.startswith('_') and not name.startswith('__')}
+    assert '_publishers' in private
+    assert attributes(ours) & private == set()

@@ -16,7 +16,7 @@ from stickslip_msgs.msg import RigEvent
 from stickslip_msgs.srv import InjectFault
 from stickslip_sim.recording import open_bag
 from stickslip_sim.scene.load import NODE
-from tests.support.node_processes import running
+from tests.support.node_processes import recording_into
 from tests.support.ros2_control_client import (
     SHIPPED,
     THRESHOLD,
@@ -27,12 +27,12 @@ from tests.support.ros2_control_client import (
     hardware_interface,
     near_is_silent,
 )
-from tests.support.ros_nodes import Client, client, nanoseconds
+from tests.support.ros_nodes import Client, live_axis, nanoseconds
 from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
-ON = ('-p', 'joint_interface.enabled:=true')
+ON = ('joint_interface.enabled:=true',)
 
 
 def joint_states_of(axis: Client) -> list[JointState]:
@@ -74,10 +74,8 @@ class TestShippedFiles:
 
 class TestJointStates:
     def test_one_a_step_with_its_stamp_but_none_of_a_lost_measurement(self, tmp_path: Path) -> None:
-        recording = ['-p', 'record.enabled:=true', '-p', f'record.folder:={tmp_path / "run"}']
-        with running(*ON, '-p', 'time.rate:=200.0', *recording) as process, client() as axis:
+        with live_axis(*ON, 'time.rate:=200.0', *recording_into(tmp_path / 'run')) as (_, axis):
             heard = joint_states_of(axis)
-            axis.connect()
             wait_for(lambda: heard, 'joint states')
             assert axis.call(InjectFault, 'inject_fault', kind='encoder_dropout', duration=0.1, value=1.0).success
             step = axis.latest('slider_state').step
@@ -85,7 +83,6 @@ class TestJointStates:
             wait_for(lambda: stamp(heard[-1]) >= later, 'joint states of after the fault')
             missing = missing_steps(axis, [stamp(message) for message in heard])
             axis.wait_for_lost('joint_states', len(missing) - 20)
-            process.end()
         states = {stamp(state): state for state in axis.heard['slider_state']}
         joints = {stamp(message): message for message in heard if stamp(message) in states}
         assert len(joints) > 30
@@ -98,35 +95,21 @@ class TestJointStates:
         assert any(end - step == 19 for step, end in zip(missing, missing[19:]))
         assert not [topic for topic in open_bag(tmp_path / 'run').topics if 'joint' in topic]
 
-    def test_prefix_and_frame(self) -> None:
-        with running(*ON, '-p', 'joint_interface.prefix:=x_') as process, client() as axis:
-            heard = joint_states_of(axis)
-            axis.connect()
-            out = axis.node.create_publisher(JointState, 'joint_commands', 1)
-            good = JointState(name=['x_axis_drive'], velocity=[0.004])
-            wait_for(lambda: out.publish(good) or axis.latest('slider_state').drive_velocity == 0.004, 'the node')
-            wait_for(lambda: heard, 'joint states')
-            process.end()
-        assert list(heard[-1].name) == ['x_axis_slider', 'x_axis_drive']
-        assert heard[-1].header.frame_id == 'x_bed'
-
-    def test_quantised(self) -> None:
+    def test_prefix_frame_and_counts(self) -> None:
         def velocities() -> set[float]:
             return {round(message.velocity[1], 9) for message in heard}
 
-        with running(*ON, '-p', 'encoder.resolution:=1.0e-4', '-p', 'time.rate:=100.0') as process, client() as axis:
+        words = ('joint_interface.prefix:=x_', 'encoder.resolution:=1.0e-4', 'time.rate:=100.0')
+        with live_axis(*ON, *words) as (_, axis):
             heard = joint_states_of(axis)
-            axis.connect()
             wait_for(lambda: len(velocities()) > 1, 'the drive to move on')
-            process.end()
-        assert velocities() == {0.0, 0.01}   # one count a step, or none
-        assert {round(message.position[1] / 1e-4, 9) % 1.0 for message in heard} == {0.0}
-
-    def test_off_unless_wanted(self) -> None:
-        with running() as process, client() as axis:
-            axis.connect()
-            assert not [name for name, _ in axis.node.get_topic_names_and_types() if 'joint' in name]
-            process.end()
+            assert velocities() == {0.0, 0.01}   # one count a step, or none
+            assert {round(message.position[1] / 1e-4, 9) % 1.0 for message in heard} == {0.0}
+            out = axis.node.create_publisher(JointState, 'joint_commands', 1)
+            good = JointState(name=['x_axis_drive'], velocity=[0.004])
+            wait_for(lambda: out.publish(good) or axis.latest('slider_state').drive_velocity == 0.004, 'the node')
+        assert list(heard[-1].name) == ['x_axis_slider', 'x_axis_drive']
+        assert heard[-1].header.frame_id == 'x_bed'
 
 
 def has_refused(count: int) -> Callable[[dict[str, str]], bool]:
@@ -151,23 +134,22 @@ class TestCommands:
             seen = hardware.states
             return abs(seen['axis_slider/position'] - target) < 3e-4 and abs(seen['axis_drive/velocity']) < 2e-3
 
-        with running(*ON, '-p', 'scene:=positioning') as process, client() as axis:
-            axis.connect()
-            with hardware_interface(update, period=0.002) as hardware:
-                _, values = axis.status('command', lambda values: int(values['velocity refused']) > 10)
-                assert values['velocity / (m/s)'] == 'none'
-                assert 'velocity = nan is refused' in values['velocity last refusal']
-                begun = True
-                wait_for(is_there, 'the slider at its target')
-            _, errors = process.end()
-        assert errors.count('velocity = nan is refused') <= 5
+        with live_axis(*ON, 'scene:=positioning', 'command.timeout:=2.0') as (process, axis), \
+                hardware_interface(update, period=0.002) as hardware:
+            _, values = axis.status('command', lambda values: int(values['velocity refused']) > 10)
+            assert values['velocity / (m/s)'] == 'none'
+            assert 'velocity = nan is refused' in values['velocity last refusal']
+            begun = True
+            wait_for(is_there, 'the slider at its target')
+            _, values = axis.status('command')    # sent always, with what is shipped
+            assert values['timed out'] == '0'
+        assert process.errors.count('velocity = nan is refused') <= 5
 
     def test_what_cannot_be_followed_is_refused_counted_and_reported(self) -> None:
         messages = [JointState(name=['spindle'], velocity=[0.001]), JointState(),
                     JointState(name=['axis_drive'], position=[0.1]),
                     JointState(name=['axis_slider', 'axis_drive'], velocity=[math.nan])]
-        with running(*ON) as process, client() as axis:
-            axis.connect()
+        with live_axis(*ON) as (process, axis):
             out = axis.node.create_publisher(JointState, 'joint_commands', 1)
             good = JointState(name=['axis_drive'], velocity=[0.004], position=[1.0])
             wait_for(lambda: out.publish(good) or axis.latest('slider_state').drive_velocity == 0.004, 'the node')
@@ -177,30 +159,19 @@ class TestCommands:
                 assert status.level == b'\1'
                 assert 'the previous command stays' in status.message
             assert axis.next('slider_state').drive_velocity == 0.004
-            _, errors = process.end()
-        assert "joint_commands.name = ['spindle'] is refused" in errors
-        assert errors.count('position is disregarded') == 1
+        assert "joint_commands.name = ['spindle'] is refused" in process.errors
+        assert process.errors.count('position is disregarded') == 1
 
 
 class TestSilence:
     def test_a_command_near_the_state_is_not_sent_and_the_time_out_says_why(self) -> None:
-        with running(*ON, '-p', 'time.rate:=200.0', '-p', 'command.timeout:=0.3') as process, client() as axis:
+        with live_axis(*ON, 'time.rate:=200.0', 'command.timeout:=0.3') as (process, axis):
             notes: list[RigEvent] = []
             axis.node.create_subscription(RigEvent, 'rig_event', notes.append, 10)
-            axis.connect()
+            axis.greet()
             with hardware_interface(always(0.003), near_is_silent(), Rule.ALL_COMMANDED):
                 axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
                 status, _ = axis.status('command', lambda values: int(values['timed out']) == 1)
-            _, errors = process.end()
         (note,) = (note for note in notes if note.kind == RigEvent.KIND_COMMAND_TIMEOUT)
         assert status.level == b'\1'
-        assert all(THRESHOLD in text for text in (status.message, note.text, errors))
-
-    def test_sent_always_with_what_is_shipped(self) -> None:
-        with running(*ON, '-p', 'command.timeout:=2.0') as process, client() as axis:
-            axis.connect()
-            with hardware_interface(always(0.003)):
-                axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
-                _, values = axis.status('command', lambda values: int(values['velocity received']) > 100)
-            process.end()
-        assert (values['timed out'], values['velocity refused']) == ('0', '0')
+        assert all(THRESHOLD in text for text in (status.message, note.text, process.errors))

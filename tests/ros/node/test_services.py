@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Storms of service calls: clear answers, and the state stays valid."""
+"""Storms of service calls, and runs that are recorded and reset: clear answers, and the state stays valid."""
 
 import math
 import random
@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from stickslip_msgs.srv import InjectFault, Step
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.outcomes import outcomes_of
 from stickslip_sim.check.verification import verify
@@ -20,12 +21,11 @@ from stickslip_sim.scene import scene_from_values
 from stickslip_sim.simulation import Fault
 from stickslip_sim.simulation.faults import RULES
 from tests.support.node_processes import recording_into
-from tests.support.replays import FIELDS, assert_same_states, made_again
-from tests.support.ros_nodes import Client, node_and_client
-
-from stickslip_msgs.srv import InjectFault, Step  # isort: skip
+from tests.support.rigs import FIELDS, assert_same_states, made_again
+from tests.support.ros_nodes import Client, live_axis
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
 CALLS = 150
 BILLION = 10**9
 COUNTS: tuple[int, ...] = (0, -1, -BILLION, BILLION, 100_001, 1, 2, 7, 50)
@@ -179,7 +179,7 @@ class LiveStorm(Storm):
 
 class TestStorm:
     def test_in_lockstep_the_motion_is_that_of_the_orders(self, tmp_path: Path) -> None:
-        with node_and_client(tmp_path, 'lockstep') as (_, axis):
+        with live_axis('time.mode:=lockstep', folder=tmp_path) as (_, axis):
             storm = Storm(axis, 'lockstep', 1)
             for _ in range(CALLS):
                 storm.call()
@@ -187,7 +187,7 @@ class TestStorm:
             storm.follow(answer, 300, math.nan, math.nan)
 
     def test_in_real_time_the_bag_has_all_that_the_motion_depends_on(self, tmp_path: Path) -> None:
-        with node_and_client(tmp_path, 'realtime', *recording_into(tmp_path / 'run')) as (_, axis):
+        with live_axis(*recording_into(tmp_path / 'run'), folder=tmp_path) as (_, axis):
             storm = LiveStorm(axis, 2)
             for _ in range(CALLS):
                 storm.call()
@@ -200,7 +200,7 @@ class TestStorm:
 def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
     """As often as a client asks that is not sure of its answer; what was ordered before is not forgotten unseen."""
     folder = tmp_path / 'run'
-    with node_and_client(tmp_path, 'lockstep', *recording_into(folder)) as (_, axis):
+    with live_axis('time.mode:=lockstep', *recording_into(folder), folder=tmp_path) as (_, axis):
         for _ in range(2):
             answer = axis.trigger('reset')
             assert answer.success
@@ -218,7 +218,7 @@ def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
 def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Path) -> None:
     """The second run of a bench in lock-step: its states begin at 0 s as those of the first do."""
     folders = [tmp_path / name for name in ('first', 'second')]
-    with node_and_client(tmp_path, 'lockstep', *recording_into(folders[0])) as (process, axis):
+    with live_axis('time.mode:=lockstep', *recording_into(folders[0]), folder=tmp_path) as (process, axis):
         for folder in folders:
             if folder is folders[1]:
                 assert axis.trigger('reset').success
@@ -242,28 +242,18 @@ def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Pa
     assert first.samples['position'][0] == 0.001
 
 
-def test_a_fault_of_the_scene_that_does_nothing_is_warned_of(tmp_path: Path) -> None:
-    fault = 'ids:=[gap]', 'kinds:=[encoder_dropout]', 'starts:=[0.1]', 'durations:=[0.1]', 'values:=[0.5]'
-    given = [word for text in fault for word in ('-p', f'faults.{text}')]
-    for is_read in (False, True):
-        with node_and_client(tmp_path, 'lockstep', *given, '-p', f'joint_interface.enabled:={is_read}') as (process, _):
-            _, log = process.end()
-        assert ('encoder_dropout does nothing: no encoder is read' in log) is not is_read
+@pytest.mark.parametrize('is_read', [False, True])
+def test_a_fault_of_the_scene_that_does_nothing_is_warned_of(is_read: bool) -> None:
+    fault = ('ids:=[gap]', 'kinds:=[encoder_dropout]', 'starts:=[0.1]', 'durations:=[0.1]', 'values:=[0.5]')
+    given = (*(f'faults.{text}' for text in fault), f'joint_interface.enabled:={is_read}')
+    with live_axis('time.mode:=lockstep', *given) as (process, _):
+        pass
+    assert ('encoder_dropout does nothing: no encoder is read' in process.errors) is not is_read
 
 
-def test_the_zeros_of_the_type_are_reported_in_place_of_an_input_profile(tmp_path: Path) -> None:
+def test_what_was_cleared_is_reported_and_the_zeros_of_the_type() -> None:
     """`ros2 service call /feed_axis/step ... '{steps: 10}'` stops the drive, and says so."""
-    with node_and_client(tmp_path, 'lockstep') as (_, axis):
-        assert 'in place' not in axis.call(Step, 'step', steps=10, velocity=math.nan, force=math.nan).message
-        answer = axis.call(Step, 'step', steps=10)
-        assert answer.message.endswith('; velocity = 0 in place of the input profile of the scene: NaN leaves it')
-        assert (answer.success, answer.state.drive_velocity) == (True, 0.0)
-        assert 'in place' not in axis.call(Step, 'step', steps=10).message
-
-
-def test_what_was_cleared_is_reported(tmp_path: Path) -> None:
-    with node_and_client(tmp_path, 'lockstep', '-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=fault'
-                         ) as (_, axis):
+    with live_axis('time.mode:=lockstep', 'command.timeout:=0.05', 'command.on_timeout:=fault') as (_, axis):
         def step(count: int, velocity: float = math.nan) -> Any:
             return axis.call(Step, 'step', steps=count, velocity=velocity, force=math.nan).state
 
@@ -271,11 +261,18 @@ def test_what_was_cleared_is_reported(tmp_path: Path) -> None:
             message: str = axis.trigger('clear_faults').message
             return message
 
+        def said(**request: float) -> str:
+            message: str = axis.call(Step, 'step', steps=1, **request).message
+            return message
+
+        assert 'in place' not in said(velocity=math.nan, force=math.nan)
+        assert said().endswith('; velocity = 0 in place of the input profile of the scene: NaN leaves it')
+        assert 'in place' not in said()
         assert clear() == 'cleared: there were none'
         for fault in ('a', 'b'):
             assert axis.call(InjectFault, 'inject_fault', id=fault, kind='drive_freeze', duration=1.0).success
         assert clear() == 'cleared: a, b'
-        step(1, 0.01)
+        assert step(1, 0.01).drive_velocity == 0.01
         assert step(100).drive_velocity == step(1, 0.01).drive_velocity == 0.0     # it takes none any more
         assert axis.call(InjectFault, 'inject_fault', id='c', kind='friction_scale', duration=1.0, value=1.5).success
         assert clear() == 'cleared: c, the command time-out (the drive takes commands again)'

@@ -12,33 +12,31 @@ from typing import Any
 
 import pytest
 from mcap.writer import Writer
+from rcl_interfaces.srv import DescribeParameters
+from rclpy.qos import QoSProfile
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import SetBool, Trigger
 
+from stickslip_msgs.msg import SliderState
 from stickslip_sim.bags.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_STATE, Topic
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, open_run, schema, write_bag
+from stickslip_sim.ros.node.endpoints import message_type, qos
+from stickslip_sim.ros.replay.span import REPLAY_PARAMETERS
 from tests.support.busy_machine import judged_by_time
-from tests.support.forked_programs import ended_at_once
+from tests.support.forked_programs import ended_at_once, refusal_of
 from tests.support.node_processes import NodeProcess, assert_clean, running
 from tests.support.recorded_runs import FACTS, damage, events, samples
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
 from tests.support.waiting import wait_for
 
-from rcl_interfaces.srv import DescribeParameters  # isort: skip
-from rclpy.qos import QoSProfile  # isort: skip
-from rosgraph_msgs.msg import Clock  # isort: skip
-from std_srvs.srv import SetBool, Trigger  # isort: skip
-
-from stickslip_msgs.msg import SliderState  # isort: skip
-from stickslip_sim.ros.replay.span import REPLAY_PARAMETERS  # isort: skip
-from stickslip_sim.ros.node.endpoints import message_type, qos  # isort: skip
-
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 SECOND = 1_000_000_000
 
 TOPICS = [topic.resolved() for topic in RECORDED if topic is not PARAMETER_EVENTS]    # nobody else publishes on these
-PAUSED = ('-p', 'start_paused:=true')
+PAUSED = ('start_paused:=true',)
 
 
 @pytest.fixture(scope='module')
@@ -50,7 +48,7 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def replaying(folder: Path, *arguments: str, afresh: bool = False) -> Any:
-    return running('-p', f'bag:={folder}', *arguments, program='replay_node', afresh=afresh)
+    return running(f'bag:={folder}', *arguments, program='replay_node', afresh=afresh)
 
 
 @contextmanager
@@ -117,7 +115,7 @@ class TestStates:
             assert_clean(*process.wait())
 
     def test_a_part_of_it(self, bag: Path) -> None:
-        part = ('-p', 'start_offset:=0.1', '-p', 'playback_duration:=0.05', '-p', 'topics:=[slider_state]')
+        part = ('start_offset:=0.1', 'playback_duration:=0.05', 'topics:=[slider_state]')
         with client() as viewer, replaying(bag, *PAUSED, *part, '-r', '/slider_state:=/seen') as process:
             ears = ByteEars(viewer, SLIDER_STATE._replace(name='/seen'), *TOPICS)
             assert call(viewer, 'is_paused').success
@@ -128,7 +126,7 @@ class TestStates:
 
     def test_again_and_again(self, bag: Path) -> None:
         """Transitions, of which none is lost: the publisher keeps more of them than come in these rounds."""
-        arguments = ('-p', 'loop:=true', '-p', 'topics:=[mode_event]')
+        arguments = ('loop:=true', 'topics:=[mode_event]')
         with viewed(bag, *arguments, *PAUSED) as (viewer, _):
             ears = ByteEars(viewer, *TOPICS)
             assert call(viewer, 'toggle_paused').message.startswith('running')
@@ -148,7 +146,7 @@ def assert_offered_as_recorded(viewer: Client, topic: Topic) -> None:
 class TestTime:
     def test_each_message_in_its_time(self, bag: Path) -> None:
         """0.3 s at a third of the speed: 301 states, one in 3 ms; the host may be late now and then."""
-        with viewed(bag, *PAUSED, '-p', 'rate:=0.3333333333333333') as (viewer, process):
+        with viewed(bag, *PAUSED, 'rate:=0.3333333333333333') as (viewer, process):
             times: dict[int, float] = {}
             viewer.hear(SliderState, '/slider_state', lambda state: times.setdefault(state.step, time.monotonic()),
                         QoSProfile(depth=500))
@@ -166,7 +164,7 @@ class TestTime:
         for step in (0, 100, 200):
             writer.write(0, b'\0\1\0\0', step * 1_000_000, start + step * 1_000_000, step)
         writer.close()
-        with client() as viewer, replaying(tmp_path / 'run', *PAUSED, '-p', 'clock:=200.0') as process:
+        with client() as viewer, replaying(tmp_path / 'run', *PAUSED, 'clock:=200.0') as process:
             clocks: list[int] = []
             viewer.node.create_subscription(
                 Clock, '/clock', lambda sent: clocks.append(sent.clock.sec * SECOND + sent.clock.nanosec), 1000)
@@ -180,7 +178,7 @@ class TestTime:
         assert clocks[-1] < start + SECOND
 
     def test_paused_message_by_message(self, bag: Path, capsys: Capture) -> None:
-        slowly = ('-p', 'rate:=0.02', '-p', 'topics:=[/slider_state]')   # 15 s
+        slowly = ('rate:=0.02', 'topics:=[/slider_state]')   # 15 s
         with viewed(bag, *PAUSED, *slowly) as (viewer, _):
             ears = ByteEars(viewer, SLIDER_STATE.resolved())
             wanted = recorded(bag, '/slider_state')
@@ -199,7 +197,7 @@ class TestTime:
             assert 3 <= count < len(wanted)
 
     def test_rate_is_a_parameter(self, bag: Path) -> None:
-        with viewed(bag, '-p', 'rate:=0.001') as (viewer, _):
+        with viewed(bag, 'rate:=0.001') as (viewer, _):
             refused = viewer.set_parameters('replay', rate=0.0)
             assert not refused.successful
             assert 'rate = 0.0 is refused: must be a number, > 0' in refused.reason
@@ -209,18 +207,18 @@ class TestTime:
 
 
 class TestProcess:
-    @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-    @pytest.mark.parametrize('arguments', [PAUSED, ('-p', 'loop:=true'), ('-p', 'delay:=1000.0')])
-    def test_signals(self, bag: Path, number: int, arguments: tuple[str, ...]) -> None:
-        with client() as viewer, replaying(bag, *arguments, afresh=arguments == PAUSED) as process:
-            assert call(viewer, 'is_paused').success is (arguments == PAUSED)
+    @pytest.mark.parametrize(('number', 'words'), [
+        (signal.SIGTERM, PAUSED), *((signal.SIGINT, words) for words in (PAUSED, ('loop:=true',), ('delay:=1000.0',)))])
+    def test_signals(self, bag: Path, number: int, words: tuple[str, ...]) -> None:
+        with client() as viewer, replaying(bag, *words, afresh=number == signal.SIGTERM) as process:
+            assert call(viewer, 'is_paused').success is (words == PAUSED)
             assert_clean(*process.end(number))
 
     def test_a_bag_that_was_cut_off_is_played_as_far_as_it_goes(self, bag: Path, tmp_path: Path) -> None:
         data = (bag / 'run_0.mcap').read_bytes()
         cut = tmp_path / 'cut.mcap'
         cut.write_bytes(data[:len(data) // 2])
-        with client() as viewer, replaying(cut, *PAUSED, '-p', 'rate:=10') as process:
+        with client() as viewer, replaying(cut, *PAUSED, 'rate:=10') as process:
             ears = ByteEars(viewer, *TOPICS)
             assert call(viewer, 'resume').success
             code, errors = process.wait()
@@ -235,44 +233,40 @@ class TestProcess:
         write_bag(tmp_path / 'run', FACTS, samples(3000), [], {})
         file = tmp_path / 'run' / 'run_0.mcap'
         damage(file)
-        code, errors = run('-p', f'bag:={file}', '-p', 'rate:=100')
+        code, errors = ended_at_once('replay_node', f'bag:={file}', 'rate:=100')
         assert (code, 'Traceback' in errors) == (2, False)
         assert f'replay_node: {file}: damaged behind 1.' in errors
 
     @pytest.mark.parametrize(('arguments', 'reported'), [
         ([], "bag = '' is refused: must be the folder of a run"),
-        (['-p', 'bag:=nowhere'], 'nowhere: no recorded run there'),
-        (['-p', 'bag:=BAG', '-p', 'rate:=0'], 'rate = 0 is refused: must be a number, > 0'),
-        (['-p', 'bag:=BAG', '-p', 'start_offset:=0.4'], 'start_offset = 0.4 is refused: must be at most 0.3 s'),
-        (['-p', 'bag:=BAG', '-p', 'topics:=[nothing]'], "topics = 'nothing' is refused: must be in the recording: "),
-        (['-p', 'bag:=BAG', '-p', 'reit:=2.0'], 'did you mean rate?'),
-        (['-p', 'bag:=BAG', '-p', 'mode:=commands', '-p', 'clock:=40.0'], 'clock = 40.0 is refused'),
-        (['-p', 'bag:=BAG', '-p', 'axis:=/feed_axis'], "axis = '/feed_axis' is refused: must be left out"),
-        (['-p', 'bag:=BAG', '-p', 'mode:=commands', '-p', 'axis:=/a//b'], "axis = '/a//b' is refused"),
-        (['-p', 'bag:=OTHER'], 'use the version of then'),
-        (['-p', 'bag:=UNKNOWN'], 'no definition of nobody_msgs/msg/Nothing'),
-        (['-p', 'bag:=UNKNOWN', '-p', 'mode:=commands'], 'no drive velocities and no forces in it'),
+        (['bag:=nowhere'], 'nowhere: no recorded run there'),
+        (['bag:=BAG', 'rate:=0'], 'rate = 0 is refused: must be a number, > 0'),
+        (['bag:=BAG', 'start_offset:=0.4'], 'start_offset = 0.4 is refused: must be at most 0.3 s'),
+        (['bag:=BAG', 'topics:=[nothing]'], "topics = 'nothing' is refused: must be in the recording: "),
+        (['bag:=BAG', 'reit:=2.0'], 'did you mean rate?'),
+        (['bag:=BAG', 'mode:=commands', 'clock:=40.0'], 'clock = 40.0 is refused'),
+        (['bag:=BAG', 'axis:=/feed_axis'], "axis = '/feed_axis' is refused: must be left out"),
+        (['bag:=BAG', 'mode:=commands', 'axis:=/a//b'], "axis = '/a//b' is refused"),
+        (['bag:=OTHER'], 'use the version of then'),
+        (['bag:=UNKNOWN'], 'no definition of nobody_msgs/msg/Nothing'),
+        (['bag:=UNKNOWN', 'mode:=commands'], 'no drive velocities and no forces in it'),
     ])
     def test_refused_in_one_line(self, bag: Path, tmp_path: Path, arguments: list[str], reported: str) -> None:
         bags = {'BAG': bag, 'OTHER': another(tmp_path / 'other.mcap', SLIDER_STATE.type, 'RIHS01_0'),
                 'UNKNOWN': another(tmp_path / 'unknown.mcap', 'nobody_msgs/msg/Nothing', '')}
         for name, path in bags.items():
             arguments = [argument.replace(name, str(path)) for argument in arguments]
-        code, errors = run(*arguments)
-        assert (code, len(errors.splitlines())) == (2, 1), errors
-        assert errors.startswith('replay_node: ')
-        assert reported in errors
+        assert reported in refusal_of('replay_node', *arguments)
 
     @pytest.mark.parametrize('topic', ['', '/a b', '/../x', '/\x1b[31m', '/' + 'x' * 5000])
     def test_a_topic_by_a_name_that_ros_refuses(self, tmp_path: Path, topic: str) -> None:
-        code, errors = run('-p', f'bag:={another(tmp_path / "odd.mcap", CLOCK.type, "", topic)}')
-        assert (code, len(errors.splitlines())) == (2, 1), errors
-        assert errors.startswith('replay_node: topic = ')
-        assert '\x1b' not in errors
+        line = refusal_of('replay_node', f'bag:={another(tmp_path / "odd.mcap", CLOCK.type, "", topic)}')
+        assert line.startswith('replay_node: topic = ')
+        assert '\x1b' not in line
 
     def test_a_node_that_is_no_axis(self, bag: Path) -> None:
         """The replay itself, which answers on the services for parameters as any node does."""
-        code, errors = run('-p', f'bag:={bag}', '-p', 'mode:=commands', '-p', 'axis:=replay')
+        code, errors = ended_at_once('replay_node', f'bag:={bag}', 'mode:=commands', 'axis:=replay')
         assert (code, 'Traceback' in errors) == (2, False)
         assert "replay_node: axis = 'replay' is refused: must be a sim_node; this node has no time.mode" in errors
 
@@ -285,10 +279,6 @@ class TestProcess:
                 assert entry.description in one.description
                 assert one.read_only is not entry.live
             assert_clean(*process.end())
-
-
-def run(*arguments: str) -> tuple[int, str]:
-    return ended_at_once('replay_node', '--ros-args', *arguments)
 
 
 def another(path: Path, type_name: str, type_hash: str, topic: str = '/slider_state') -> Path:

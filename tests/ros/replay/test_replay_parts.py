@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of the replay, without ROS: the bag, its time line, the player."""
+"""Parts of the replay, without ROS: the bag, its time line, the player, and recorded orders as bytes."""
 
 import threading
 import time
@@ -9,15 +9,25 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from mcap.writer import CompressionType, Writer
+from rcl_interfaces.msg import Parameter, ParameterEvent, ParameterType, ParameterValue
+from rclpy.serialization import serialize_message
 
-from stickslip_sim.bags.topics import RECORDED
+from stickslip_msgs.msg import RigEvent
+from stickslip_sim.bags.topics import PARAMETER_EVENTS, RECORDED, RIG_EVENT
 from stickslip_sim.core.errors import RecordingError
-from stickslip_sim.recording import QosProfile, write_bag
+from stickslip_sim.recording import QosProfile, Topic, write_bag
 from stickslip_sim.recording.playback import Recording
+from stickslip_sim.ros.replay.orders import Request, is_timeout, request_of
 from stickslip_sim.ros.replay.player import Act, Player, Timeline
+from stickslip_sim.simulation import RigEventKind
 from tests.support.recorded_runs import FACTS, damage, events, samples
+from tests.support.refusals import accepts_or_refuses
 from tests.support.waiting import wait_for
+
+pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")
 
 SECOND = 1_000_000_000
 
@@ -163,79 +173,57 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def file_of(folder: Path) -> Path:
-    return folder / f'{folder.name}_0.mcap'
-
-
-def changed(bag: Path, target: Path, change: Callable[[bytearray], bytes | bytearray]) -> Path:
-    """Write the file of a bag anew with a change."""
-    target.write_bytes(change(bytearray(file_of(bag).read_bytes())))
-    return target
+@pytest.fixture(scope='module')
+def whole(bag: Path) -> bytes:
+    return next(bag.glob('*.mcap')).read_bytes()
 
 
 class TestRecording:
-    def test_topics_and_span(self, bag: Path) -> None:
+    def test_topics_span_and_messages_from_any_time_on(self, bag: Path) -> None:
         recording = Recording(bag)
         assert {name: topic.qos for name, topic in recording.topics.items()} == {
             f'/{topic.name.lstrip("/")}': topic.qos for topic in RECORDED}
         assert (recording.begin, recording.end, recording.is_complete) == (0, 1_999_000_000, True)
-
-    def test_messages_from_any_time_on(self, bag: Path) -> None:
-        recording = Recording(bag)
         messages = list(recording.messages(['/slider_state'], 1_500_000_000, 1_600_000_000))
         assert [message.sequence for message in messages] == list(range(1500, 1601))
         everything = [message.log_time for message in recording.messages(recording.topics, 0, recording.end)]
         assert everything == sorted(everything)
 
-    def test_cut_off(self, bag: Path, tmp_path: Path) -> None:
-        recording = Recording(changed(bag, tmp_path / 'cut.mcap', lambda data: data[:len(data) // 2]))
+    def test_cut_off(self, whole: bytes, tmp_path: Path) -> None:
+        (tmp_path / 'cut.mcap').write_bytes(whole[:len(whole) // 2])
+        recording = Recording(tmp_path / 'cut.mcap')
         assert not recording.is_complete
         steps = [message.sequence for message in recording.messages(['/slider_state'], 0, recording.end)]
         assert steps == list(range(len(steps)))
         assert 500 < len(steps) < 1500
         assert recording.end == (len(steps) - 1) * 1_000_000
 
-    @pytest.mark.parametrize(('size', 'reported'), [(0, 'not an MCAP file'), (5, 'not an MCAP file'),
-                                                (20, 'not an MCAP file'), (60, 'no message can be read')])
-    def test_cut_off_before_all(self, bag: Path, tmp_path: Path, size: int, reported: str) -> None:
-        with pytest.raises(RecordingError, match=reported):
-            Recording(changed(bag, tmp_path / 'cut.mcap', lambda data: data[:size]))
-
-    def test_damaged_in_the_middle(self, bag: Path, tmp_path: Path) -> None:
-        recording = Recording(changed(bag, tmp_path / 'damaged.mcap', lambda data: data))
-        damage(recording.path)
-        played: list[int] = []
-        with pytest.raises(RecordingError, match=r'damaged behind [01]\.\d+ s'):
-            played.extend(message.sequence for message in recording.messages(['/slider_state'], 0, recording.end))
-
-    def test_no_bag(self, tmp_path: Path) -> None:
-        (tmp_path / 'text.mcap').write_text('nothing of that kind')
-        with pytest.raises(RecordingError, match='not an MCAP file'):
-            Recording(tmp_path / 'text.mcap')
+    def test_none_can_be_read(self, whole: bytes, tmp_path: Path) -> None:
+        path, empty = tmp_path / 'cut.mcap', foreign(tmp_path, {}, messages=0).read_bytes()
+        for data, reported in ((b'', 'not an MCAP file'), (whole[:5], 'not an MCAP file'),
+                               (whole[:20], 'not an MCAP file'), (b'nothing of that kind', 'not an MCAP file'),
+                               (whole[:60], 'no message can be read'), (empty, 'no message can be read')):
+            path.write_bytes(data)
+            with pytest.raises(RecordingError, match=reported):
+                Recording(path)
         with pytest.raises(RecordingError, match='no recorded run there'):
             Recording(tmp_path / 'nowhere')
-
-    def test_nothing_in_it(self, tmp_path: Path) -> None:
-        with pytest.raises(RecordingError, match='no message can be read'):
-            Recording(foreign(tmp_path, {}, messages=0))
 
 
 class TestOtherRecorders:
     """Bags that other programs write."""
 
-    def test_offers_of_older_versions(self, tmp_path: Path) -> None:
+    def test_offers_of_older_versions_none_and_several(self, tmp_path: Path) -> None:
         time = '{sec: 9223372036, nsec: 854775807}'
-        offer = (f'- {{history: 1, depth: 5, reliability: 2, durability: 1, deadline: {time}, lifespan: {time},'
+        older = (f'- {{history: 1, depth: 5, reliability: 2, durability: 1, deadline: {time}, lifespan: {time},'
                  f' liveliness: 1, liveliness_lease_duration: {time}, avoid_ros_namespace_conventions: false}}')
-        topic = Recording(foreign(tmp_path, {'offered_qos_profiles': offer})).topics['/chatter']
-        assert topic.qos == QosProfile(5, 'best_effort', 'transient_local')
-        assert (topic.type, topic.encoding, topic.type_hash) == ('std_msgs/msg/Empty', 'cdr', '')
-
-    def test_no_offer_or_several(self, tmp_path: Path) -> None:
         one = QosProfile(1, 'best_effort').as_yaml()
         several = str([one, {**one, 'durability': 'transient_local'}])
-        for number, metadata in enumerate(({}, {'offered_qos_profiles': several})):
-            assert Recording(foreign(tmp_path, metadata, f'{number}.mcap')).topics['/chatter'].qos == QosProfile(10)
+        for metadata, qos in (({'offered_qos_profiles': older}, QosProfile(5, 'best_effort', 'transient_local')),
+                              ({'offered_qos_profiles': several}, QosProfile(10)), ({}, QosProfile(10))):
+            topic = Recording(foreign(tmp_path, metadata)).topics['/chatter']
+            assert topic.qos == qos
+            assert (topic.type, topic.encoding, topic.type_hash) == ('std_msgs/msg/Empty', 'cdr', '')
 
     @pytest.mark.parametrize('offer', ['- {history: 1}', '[', '- 5', '{a: b}'])
     def test_offers_that_are_none(self, tmp_path: Path, offer: str) -> None:
@@ -263,11 +251,11 @@ class TestOtherRecorders:
         assert [m.log_time for m in recording.messages(['/chatter'], recording.begin, recording.end)] == [3, 2, 1]
 
 
-def foreign(folder: Path, metadata: dict[str, str], name: str = 'foreign.mcap', messages: int = 3,
+def foreign(folder: Path, metadata: dict[str, str], messages: int = 3,
             compression: CompressionType = CompressionType.ZSTD, use_statistics: bool = True,
             since: int = 0) -> Path:
     """Write a bag as another program might: messages at 1, 2, ... ns after `since`, the later ones first."""
-    path = folder / name
+    path = folder / 'foreign.mcap'
     with path.open('wb') as stream:
         writer = Writer(stream, compression=compression, use_statistics=use_statistics)
         writer.start('ros2', 'another')
@@ -277,3 +265,30 @@ def foreign(folder: Path, metadata: dict[str, str], name: str = 'foreign.mcap', 
             writer.add_message(channel, since + at, b'\0\1\0\0\0', since + at, 0)
         writer.finish()  # type: ignore[no-untyped-call]
     return path
+
+
+MASS = Parameter(name='axis.mass', value=ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=300.0))
+
+
+@pytest.fixture(scope='module')
+def orders() -> list[tuple[Topic, bytes]]:
+    fault = RigEvent(kind=int(RigEventKind.FAULT_INJECTED), id='dry', fault='friction_scale')
+    change = ParameterEvent(node='/feed_axis', changed_parameters=[MASS])
+    return [(RIG_EVENT, serialize_message(fault)), (PARAMETER_EVENTS, serialize_message(change))]
+
+
+@settings(max_examples=150)
+@given(place=st.integers(0, 200), cut=st.integers(0, 9), data=st.binary(max_size=9))
+def test_orders(orders: list[tuple[Topic, bytes]], place: int, cut: int, data: bytes) -> None:
+    for kind, whole in orders:
+        assert isinstance(request_of(kind, whole), Request)
+        for sent in (whole[:place], whole[:place] + data + whole[place + cut:], data):
+            accepts_or_refuses(request_of, kind, sent)
+            accepts_or_refuses(is_timeout, kind, sent)
+
+
+@pytest.mark.parametrize('data', [b'', b'\x00\x01\x00\x01'])   # no header; padding where there is no content
+def test_no_order_is_refused_with_what_to_do(data: bytes) -> None:
+    for kind in (RIG_EVENT, PARAMETER_EVENTS):
+        with pytest.raises(RecordingError, match='is damaged: play what is before with playback_duration'):
+            request_of(kind, data)

@@ -1,32 +1,38 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Who else is on the topics of a node, and whose clock it follows."""
+"""Who else is on the topics of a node, whose clock it follows, and how it is."""
 
+import signal
+import subprocess
 import time
 from itertools import count
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
 from builtin_interfaces.msg import Time
+from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
 from stickslip_sim.bags import topics
-from stickslip_sim.core.errors import InputError
+from stickslip_sim.core.errors import InputError, StickslipError
 from stickslip_sim.core.time_grid import NANOSECONDS
+from stickslip_sim.ros.health_node import health_of
 from stickslip_sim.ros.node.clock import ClockIn
 from stickslip_sim.ros.node.graph_monitor import PublisherWatch
-from tests.support.node_processes import running
+from tests.support.forked_programs import ended_at_once, refusal_of, ros_args
+from tests.support.node_processes import executable, recording_into, running, with_small_files
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
-from tests.support.ros_nodes import Client, client, nanoseconds
+from tests.support.ros_nodes import Client, client, live_axis, nanoseconds
 from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
-SLOW = ('-p', 'time.rate:=200.0')    # who is there does not depend on it
+SLOW = ('time.rate:=200.0',)    # who is there, and how it is, does not depend on it
 MILLISECOND = NANOSECONDS // 1000
-ON = (*SLOW, '-p', 'joint_interface.enabled:=true')
+ON = (*SLOW, 'joint_interface.enabled:=true')
 
 
 def trouble(axis: Client, text: str) -> Any:
@@ -42,8 +48,7 @@ def no_trouble(axis: Client) -> None:
 
 class TestGraphMonitor:
     def test_controllers_come_and_go(self) -> None:
-        with running(*ON) as process, client() as axis:
-            axis.connect()
+        with live_axis(*ON) as (process, axis):
             axis.stop_commanding()
             with hardware_interface(always(0.003), name='first'):
                 with hardware_interface(always(0.004), name='second'):
@@ -60,18 +65,22 @@ class TestGraphMonitor:
             trouble(axis, 'its 0.005 stays')
             assert axis.trigger('reset').success
             no_trouble(axis)
-            _, errors = process.end()
-        lines = [line.split(']: ')[1] for line in errors.splitlines() if 'velocity' in line and 'real-time' not in line]
+            out = axis.node.create_publisher(JointState, 'joint_states', 10)    # a stranger on a topic of the node
+            assert '/client publishes on /joint_states too' in trouble(axis, 'joint_states').message
+            axis.drop(out)
+            no_trouble(axis)
+        said = [line.split(']: ')[1] for line in process.errors.splitlines() if ']: ' in line]
+        of_velocity = [line for line in said if 'velocity' in line and 'real-time' not in line]
         alone, gone = '/first alone commands the velocity', 'the controller of the velocity is gone, and its {} stays'
-        assert [line.split(':')[0].split(' in force')[0] for line in lines[-5:]] == [
+        assert [line.split(':')[0].split(' in force')[0] for line in of_velocity[-5:]] == [
             '2 controllers at once on /drive_velocity, /joint_commands', alone, gone.format(0.003), alone,
             gone.format(0.005)]
+        assert process.errors.count('publishes on /joint_states too') == 1
+        assert '/joint_states has one publisher again' in process.errors
 
     def test_what_a_time_out_has_ended_does_not_stay_in_force(self) -> None:
         """Nor does a force trouble anybody: no time-out ends it, and it is meant to act until the next."""
-        with running(*SLOW, '-p', 'command.timeout:=0.05', '-p', 'command.on_timeout:=ramp_to_zero') as process, \
-                client() as axis:
-            axis.connect()
+        with live_axis(*SLOW, 'command.timeout:=0.05', 'command.on_timeout:=ramp_to_zero') as (process, axis):
             axis.send_velocity(0.004)
             axis.send_force(300.0)
             axis.status('command', lambda values: values['timed out'] == '1' and values['force received'] == '1')
@@ -80,10 +89,9 @@ class TestGraphMonitor:
             wait_for(lambda: not axis.node.count_publishers('drive_velocity'), 'nobody who commands')
             wait_for(lambda: len(axis.heard['/diagnostics']) > looks + 3, 'looks around')
             no_trouble(axis)
-            _, errors = process.end()
-        assert 'stays in force' not in errors
-        assert 'velocity is gone, and the command time-out has struck' in errors
-        assert 'nobody commands the force any more: the latest acts until the next' in errors
+        assert 'stays in force' not in process.errors
+        assert 'velocity is gone, and the command time-out has struck' in process.errors
+        assert 'nobody commands the force any more: the latest acts until the next' in process.errors
 
     def test_a_controller_bears_its_name_from_the_first_look_on(self) -> None:
         """ROS knows a publisher some 40 ms before it knows whose it is."""
@@ -101,50 +109,35 @@ class TestGraphMonitor:
                 wait_for(changed, 'its end')
                 assert publishers.nodes == []
 
-    def test_a_stranger_on_a_topic_of_the_node(self) -> None:
-        with running(*ON) as process, client() as axis:
-            axis.connect()
-            out = axis.node.create_publisher(JointState, 'joint_states', 10)
-            assert '/client publishes on /joint_states too' in trouble(axis, 'joint_states').message
-            axis.drop(out)
-            no_trouble(axis)
-            _, errors = process.end()
-        assert errors.count('publishes on /joint_states too') == 1
-        assert '/joint_states has one publisher again' in errors
-
-    @pytest.mark.parametrize('rule', [Rule.ALL_POSITIONS, Rule.COMMANDED_POSITIONS])
-    def test_one_that_never_sends_is_reported(self, rule: Rule) -> None:
+    def test_one_that_never_sends_is_reported(self) -> None:
         """They compare positions, and none is commanded: at position 0, or for ever, there is no difference."""
-        with running(*ON, '-p', 'drive.velocity:=0.0') as process, client() as axis:
-            axis.connect()
-            with hardware_interface(always(0.003), near_is_silent(), rule) as hardware:
-                status = trouble(axis, 'sends nothing')
-                assert hardware.sent == 0
-            assert THRESHOLD in status.message
-            process.end()
+        with live_axis(*ON, 'drive.velocity:=0.0') as (_, axis):
+            for rule in (Rule.ALL_POSITIONS, Rule.COMMANDED_POSITIONS):
+                with hardware_interface(always(0.003), near_is_silent(), rule) as hardware:
+                    status = trouble(axis, 'sends nothing')
+                    assert hardware.sent == 0
+                assert THRESHOLD in status.message
+                no_trouble(axis)
 
 
 class TestClock:
-    @pytest.mark.parametrize('mode', ['lockstep', 'free_run'])
-    def test_its_own_is_not_followed(self, mode: str) -> None:
-        with running('-p', f'time.mode:={mode}', '-p', 'use_sim_time:=true') as process:
-            code, errors = process.wait()
-        assert code == 2
-        assert errors.startswith('sim_node: use_sim_time = True is refused: must be false on this node')
-        assert mode in errors
-        assert len(errors.splitlines()) == 1
+    @pytest.mark.parametrize(('words', 'reported'), [
+        (['time.mode:=lockstep', 'use_sim_time:=true'], ['must be false on this node', 'lockstep']),
+        (['time.mode:=free_run', 'use_sim_time:=true'], ['must be false on this node', 'free_run']),
+        (['use_sim_time:=3'], ["'use_sim_time' to '3'"]),
+    ])
+    def test_refused_from_the_start(self, words: list[str], reported: list[str]) -> None:
+        line = refusal_of('sim_node', *words)
+        assert all(text in line for text in reported), line
 
-    def test_nor_later(self) -> None:
-        with running('-p', 'time.mode:=lockstep') as process, client() as axis:
-            axis.connect(is_moving=False)
+    def test_its_own_is_not_followed_later(self) -> None:
+        with live_axis('time.mode:=lockstep') as (_, axis):
             answer = axis.set_parameters(use_sim_time=True)
             assert (answer.successful, answer.reason.split(':')[0]) == (False, 'use_sim_time = True is refused')
             assert axis.set_parameters(use_sim_time=False).successful
-            process.end()
 
     def test_that_of_another_is_warned_of_and_refused_where_nobody_has_one(self) -> None:
-        with running() as process, client() as axis:
-            axis.connect()
+        with live_axis() as (process, axis):
             answer = axis.set_parameters(use_sim_time=True)
             assert (answer.successful, 'no node publishes /clock' in answer.reason) == (False, True)
             out = axis.node.create_publisher(Clock, '/clock', 1)
@@ -159,11 +152,10 @@ class TestClock:
             assert not is_of_clock(axis.next('slider_state'))
             assert axis.trigger('reset').success
             axis.next('slider_state', is_of_clock)
-            _, errors = process.end()
-        assert errors.count('use_sim_time: true: the stamps of the motion follow from the next ~/reset on') == 1
+        assert process.errors.count('use_sim_time: true: the stamps of the motion follow from the next ~/reset on') == 1
 
     def test_stamps_start_from_the_first_of_another(self) -> None:
-        with running('-p', 'use_sim_time:=true') as process, client() as axis:
+        with running('use_sim_time:=true') as process, client() as axis:
             out = axis.node.create_publisher(Clock, '/clock', 1)
             wait_for(out.get_subscription_count, 'the node that waits')
             assert not axis.heard['slider_state']
@@ -186,9 +178,46 @@ class TestClock:
         with pytest.raises(InputError, match=r'use_sim_time = True is refused: must be with a /clock within 10 s'):
             clock.has_come()
 
-    def test_of_another_type(self) -> None:
-        with running('-p', 'use_sim_time:=3') as process:
-            code, errors = process.wait()
-        assert code == 2
-        assert "'use_sim_time' to '3'" in errors
+class TestHealth:
+    def test_one_that_runs_is_well_one_of_another_namespace_is_not_meant(self) -> None:
+        with live_axis(*SLOW, namespace='/press'):
+            done = subprocess.run([executable('health'), *ros_args('-r', '__ns:=/press', 'patience:=20.0')],
+                                  capture_output=True, text=True, timeout=60, check=False)
+            code, errors = ended_at_once('health', 'patience:=3.0')
+        assert (done.returncode, done.stderr) == (0, '')
+        assert done.stdout.startswith('/press/feed_axis is well')
+        assert code == 1
+        assert 'in this namespace' in errors
+
+    def test_one_that_hangs_says_nothing(self) -> None:
+        with running(*SLOW) as process:
+            with client() as axis:
+                axis.connect()
+            process.send(signal.SIGSTOP)
+            code, errors = ended_at_once('health', 'patience:=3.0')
+        assert code == 1
+        assert errors.startswith('health: /feed_axis said nothing on /diagnostics within 3 s')
+
+    def test_one_whose_recording_failed_is_not_well(self, tmp_path: Path) -> None:
+        with running(*recording_into(tmp_path / 'run'), prepare=with_small_files):
+            with client() as axis:
+                axis.status('recorder', lambda values: int(values['dropped']) > 0)
+            code, errors = ended_at_once('health', 'patience:=20.0')
+        assert code == 1
+        assert errors.startswith('health: /feed_axis is not well: recorder: ')
         assert len(errors.splitlines()) == 1
+
+    @pytest.mark.parametrize(('words', 'reported'), [
+        (['patience:=0.0'], 'patience = 0.0'), (['patence:=3.0'], 'did you mean patience?'),
+        (['--', 'now'], "argument = 'now'"),
+    ])
+    def test_refused(self, words: list[str], reported: str) -> None:
+        assert reported in refusal_of('health', *words)
+
+    def test_a_verdict_is_by_the_worst(self) -> None:
+        fine, slow, full = (DiagnosticStatus(name=name, level=level, message=f'{name} reported')
+                            for name, level in (('loop', b'\0'), ('command', b'\1'), ('recorder', b'\2')))
+        assert health_of('/a', [fine]) == '/a is well: loop: loop reported'
+        assert health_of('/a', [fine, slow]) == '/a is well, with warnings: command: command reported'
+        with pytest.raises(StickslipError, match=r'not well: recorder: recorder reported$'):
+            health_of('/a', [slow, full, fine])

@@ -1,16 +1,25 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parameter files for several nodes: what fits a node reaches it, as rclcpp reads them, and the rest is passed over."""
+"""Parameter files as rclcpp reads them, with scenes as this package does: what fits a node, and what is refused."""
 
+import array
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.node import Node
 
 from stickslip_sim.core.errors import InputError
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.ros.node.parameters import scene_at_start
 from stickslip_sim.ros.programs import GivenParameters, NodeParameters
-from tests.support.node_processes import running
-from tests.support.ros_nodes import client
+from stickslip_sim.scene import scene_from_values, scene_names
+from stickslip_sim.scene.ros_yaml import plain_value
+from tests.support.forked_programs import refusal_of, ros_args
+from tests.support.ros_nodes import live_axis
+from tests.support.scene_files import HEAD, write
 
 pytestmark = pytest.mark.ros
 
@@ -22,12 +31,12 @@ TWO_AXES = """\
 
 
 def given(folder: Path, node: str, *texts: str, single: tuple[str, ...] = ()) -> NodeParameters:
-    words = [word for each in single for word in ('-p', each)]
+    words = [*single]
     for number, text in enumerate(texts):
         path = folder / f'parameters_{number}.yaml'
         path.write_text(text)
         words += ['--params-file', str(path)]
-    return GivenParameters.read(['--ros-args', *words]).of(node)
+    return GivenParameters.read(ros_args(*words)).of(node)
 
 
 @pytest.mark.parametrize(('pattern', 'node', 'fits'), [
@@ -56,13 +65,10 @@ def test_the_specific_holds_over_the_general_in_any_order(general: str, specific
             assert found.values == {'seed': 2, 'scene': 'mine'}
 
 
-def test_of_two_alike_the_later_holds(tmp_path: Path) -> None:
+def test_of_two_alike_the_later_holds_and_single_parameters_over_files(tmp_path: Path) -> None:
     texts = ['/x/**: {ros__parameters: {seed: 1}}\n', '/**/feed_axis: {ros__parameters: {seed: 2}}\n']
     assert given(tmp_path, '/x/feed_axis', *texts).values == {'seed': 2}
     assert given(tmp_path, '/x/feed_axis', *texts[::-1]).values == {'seed': 1}
-
-
-def test_single_parameters_hold_over_files(tmp_path: Path) -> None:
     found = given(tmp_path, '/feed_axis', '/feed_axis: {ros__parameters: {seed: 1, axis: {mass: 5.0}}}\n',
                   single=('seed:=2', 'feed_axis:time.rate:=500', 'other:seed:=3'))
     assert found.values == {'seed': 2, 'axis.mass': 5.0, 'time.rate': 500}
@@ -91,8 +97,71 @@ def test_a_file_without_a_scene_that_leaves_out_the_friction_is_refused(text: st
 def test_two_axes_and_a_controller_share_a_file(tmp_path: Path) -> None:
     path = tmp_path / 'cell.yaml'
     path.write_text(TWO_AXES)
-    for namespace, scene, seed in (('/x', 'positioning', 0), ('/y', 'paper_fig7', 4)):
-        with running('--params-file', str(path), '-r', f'__ns:={namespace}'), client(namespace) as axis:
-            name, number, force = axis.values('scene', 'seed', 'axis.normal_force')
-            assert (name.string_value, number.integer_value) == (scene, seed)
-            assert force.double_value == (2500.0 if namespace == '/x' else 350 * 9.80665)
+    for namespace, *expected in (('/x', 'positioning', 0, 2500.0), ('/y', 'paper_fig7', 4, 350 * 9.80665)):
+        with live_axis('--params-file', str(path), namespace=namespace) as (_, axis):
+            scene, seed, force = axis.values('scene', 'seed', 'axis.normal_force')
+            assert [scene.string_value, seed.integer_value, force.double_value] == expected
+
+
+TEXTS = {
+    'nested more than 16 deep': '[' * 100_000,
+    'more than 200000 numbers in a list': '[' + '0.1,' * 210_000 + '0.2]\n',
+    'at most 1048576 letters': '"' + 'a' * 1_100_000 + '"\n',
+}
+
+
+@pytest.mark.parametrize(('program', 'reported'), [
+    *(('sim_node', reported) for reported in TEXTS),
+    *((program, 'nested more than 16 deep') for program in (
+        'cascade_controller', 'compensating_controller', 'replay_node', 'health'))])
+def test_too_deep_or_too_long_for_the_parser_of_ros(program: str, reported: str, tmp_path: Path) -> None:
+    path = tmp_path / 'parameters.yaml'
+    path.write_text(f'/**:\n  ros__parameters:\n    numbers: {TEXTS[reported]}')
+    line = refusal_of(program, '--params-file', path)
+    assert line.startswith(f'{program}: {path}: ')
+    assert reported in line
+
+
+def test_one_for_a_controller_takes_effect(tmp_path: Path) -> None:
+    path = tmp_path / 'parameters.yaml'
+    path.write_text('cascade_controller:\n  ros__parameters:\n    moves: {feed: -1.0}\n')
+    assert 'moves.feed = -1.0' in refusal_of('cascade_controller', '--params-file', path)
+
+
+WORDS = ('350', '350.', '.5', '6e5', '-1E-3', '.inf', '-.inf', 'inf', '0x10', '010', '08', '1_000', '1:30', 'null', '~',
+         '2020-01-01', '1e400', '1e-320', 'yes', 'Off', 'y', '1.0f', '9223372036854775808', 'rigid', '+5', '-0', '00',
+         '+.INF')
+OF_ROS = ('use_sim_time', 'start_type_description_service')
+
+
+def parameters(path: str) -> dict[str, object]:
+    """Return the parameters that a node gets from a file."""
+    context = Context()
+    rclpy.init(args=['--ros-args', '--params-file', path], context=context)
+    node = Node('feed_axis', context=context, automatically_declare_parameters_from_overrides=True,
+                start_parameter_services=False, enable_rosout=False)
+    values = {name: parameter.value for name, parameter in node.get_parameters_by_prefix('').items()}
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    return {name: tuple(value) if isinstance(value, (list, array.array)) else value
+            for name, value in values.items() if name not in OF_ROS}
+
+
+@pytest.mark.parametrize('name', scene_names())
+def test_a_node_gets_the_same_scene(name: str, tmp_path: Path) -> None:
+    scene = load_scene(name)
+    assert scene_from_values(parameters(str(files('stickslip_sim') / 'scenes' / f'{name}.yaml'))) == scene
+    assert parameters(write(tmp_path, scene.text, '')) == scene.values
+
+
+def test_plain_words_have_the_same_types(tmp_path: Path) -> None:
+    read = parameters(write(tmp_path, ''.join(f'    a{i}: {word}\n' for i, word in enumerate(WORDS)), HEAD))
+    expected = {f'a{i}': plain_value(word) for i, word in enumerate(WORDS)}
+    assert read == expected
+    assert [type(read[name]) for name in expected] == [type(value) for value in expected.values()]
+
+
+def test_extreme_values_survive(tmp_path: Path) -> None:
+    scene = load_scene('paper_fig8', {'scene': 'a "q" \\ é 😀 #: y', 'axis.mass': 1e-9, 'seed': 2**63 - 1,
+                                      'axis.drive_stiffness': 1e18, 'axis.drive_damping': 2.3e-308})
+    assert parameters(write(tmp_path, scene.text, '')) == scene.values

@@ -9,65 +9,53 @@ import subprocess
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any
 
 import pytest
+from rcl_interfaces.msg import Log
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
 
 from benchmarks.closed_loop import close_loop
 from benchmarks.controllers import AXIS, controllers
+from stickslip_msgs.srv import Step
 from stickslip_sim.controllers import Moves
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
-from tests.support.busy_machine import judged_by_time
-from tests.support.forked_programs import ended_at_once
-from tests.support.node_processes import assert_clean, executable, running
-from tests.support.ros_nodes import Client, client
-from tests.support.tool import Capture, answered
-from tests.support.waiting import DEADLINE, wait_for
-
-from rcl_interfaces.msg import Log  # isort: skip  # after tests.support.ros_nodes, which skips without ROS
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # isort: skip
-from sensor_msgs.msg import JointState  # isort: skip
-
-from stickslip_msgs.srv import Step
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.ros.controllers.controller_node import measurement
 from stickslip_sim.ros.node.joints import JointNames
+from stickslip_sim.scene.values import scene_text
+from tests.support.busy_machine import judged_by_time
+from tests.support.forked_programs import refusal_of
+from tests.support.node_processes import assert_clean, executable, running
+from tests.support.ros_nodes import Client, client, live_axis
+from tests.support.tool import Capture, answered
+from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = pytest.mark.ros
 
 NAMES = {'cascade': 'cascade_controller', 'compensated': 'compensating_controller'}
-BENCH = ['-p', 'scene:=positioning', '-p', 'drive.course:=constant', '-p', 'drive.velocity:=0.0',
-         '-p', 'joint_interface.enabled:=true']
+BENCH = ['scene:=positioning', 'drive.course:=constant', 'drive.velocity:=0.0',
+         'joint_interface.enabled:=true']
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 ATTEMPTS = 40
 
 
-def refused(program: str, *ros_args: str) -> str:
-    """Return the one line with which a program refuses to start."""
-    code, errors = ended_at_once(program, '--ros-args', *ros_args)
-    assert code == 2, errors
-    (line,) = errors.splitlines()
-    assert line.startswith(f'{program}: ')
-    return line
-
-
 class TestRefusedStart:
-    @pytest.mark.parametrize(('argument', 'reported'), [
-        ('moves.feed:=-0.001', ['moves.feed = -0.001', '>= 1e-12']),
-        ('moves.fed:=0.001', ['moves.fed = 0.001', 'did you mean moves.feed?']),
-        ('position_gain:=.nan', ['position_gain = nan']),
-        ('integral_time:=0.0', ['integral_time = 0.0', 'or .inf']),
-        ('compensation.share:=0.5', ['compensation.share = 0.5', 'one of moves.travel']),
+    @pytest.mark.parametrize(('program', 'word', 'reported'), [
+        ('cascade_controller', 'moves.feed:=-0.001', ['moves.feed = -0.001', '>= 1e-12']),
+        ('cascade_controller', 'moves.fed:=0.001', ['moves.fed = 0.001', 'did you mean moves.feed?']),
+        ('cascade_controller', 'position_gain:=.nan', ['position_gain = nan']),
+        ('cascade_controller', 'integral_time:=0.0', ['integral_time = 0.0', 'or .inf']),
+        ('cascade_controller', 'compensation.share:=0.5', ['compensation.share = 0.5', 'one of moves.travel']),
+        ('compensating_controller', 'compensation.model:=paper_fig9', ['compensation.model', 'paper_fig8?']),
     ])
-    def test_parameters(self, argument: str, reported: list[str]) -> None:
-        line = refused('cascade_controller', '-p', argument)
-        assert all(word in line for word in reported), line
-
-    def test_a_model_that_is_no_scene(self) -> None:
-        line = refused('compensating_controller', '-p', 'compensation.model:=paper_fig9')
-        assert 'compensation.model' in line
-        assert 'did you mean paper_fig8?' in line
+    def test_parameters(self, program: str, word: str, reported: list[str]) -> None:
+        line = refusal_of(program, word)
+        assert all(text in line for text in reported), line
 
     @pytest.mark.parametrize('program', NAMES.values())
     def test_help(self, program: str) -> None:
@@ -87,10 +75,9 @@ def test_without_an_axis_it_says_what_is_missing() -> None:
     with running(program='cascade_controller') as process, client() as listener:
         logged = log_lines(listener)
         wait_for(lambda: any('no /joint_states' in text for text in logged), 'a warning')
-        code, errors = process.end(signal.SIGTERM)
-    assert code == 0, errors
-    assert 'joint_interface.enabled?' in errors
-    assert errors.count('no /joint_states') == 1
+        assert_clean(*process.end(signal.SIGTERM))
+    assert 'joint_interface.enabled?' in process.errors
+    assert process.errors.count('no /joint_states') == 1
 
 
 class LockStep:
@@ -133,8 +120,8 @@ class LockStep:
 def test_in_lock_step_it_is_the_loop_of_the_benchmark_to_the_last_bit(kind: str) -> None:
     steps = 400
     offline = close_loop(AXIS, controllers()[kind], Moves(), 0.001 * (steps + 1))
-    arguments = ['-r', 'joint_commands:=answers', '-p', 'use_sim_time:=true']
-    with running(*BENCH, '-p', 'time.mode:=lockstep'), client() as axis, \
+    arguments = ['-r', 'joint_commands:=answers', 'use_sim_time:=true']
+    with running(*BENCH, 'time.mode:=lockstep'), client() as axis, \
             running(*arguments, program=NAMES[kind], afresh=True) as controller:
         bench = LockStep(axis)
         answer = bench.begin()
@@ -145,29 +132,24 @@ def test_in_lock_step_it_is_the_loop_of_the_benchmark_to_the_last_bit(kind: str)
             assert (state.position, state.velocity, state.drive_position) == (
                 expected.position, expected.velocity, expected.drive_position)
         assert bench.begin() == offline.commands[0]    # time goes back: it begins anew
-        code, errors = controller.end()
-    assert code == 0, errors
-    assert errors.count('the moves begin at 0 m') >= 2
+        assert_clean(*controller.end())
+    assert controller.errors.count('the moves begin at 0 m') >= 2
 
 
 @contextmanager
 def driven(kind: str) -> Iterator[tuple[Client, Any]]:
     """Run axis and controller at half the speed of real time, so that a busy machine keeps up."""
-    with running(*BENCH, '-p', 'time.mode:=free_run', '-p', 'time.factor:=0.5') as bench, client() as axis:
-        axis.connect()
-        with running(program=NAMES[kind]) as controller:
-            axis.next('slider_state', lambda state: state.drive_velocity != 0.0)
-            yield axis, controller
-        assert_clean(*bench.end())
+    with live_axis(*BENCH, 'time.mode:=free_run', 'time.factor:=0.5') as (_, axis), \
+            running(program=NAMES[kind]) as controller:
+        axis.next('slider_state', lambda state: state.drive_velocity != 0.0)
+        yield axis, controller
 
 
 def sticks_in_slow_feed(kind: str) -> int:
     """Let a controller move the axis by 0.8 mm, end it, and see the drive stop."""
     with driven(kind) as (axis, controller):
         last = axis.next('slider_state', lambda state: state.position > 0.0008)
-        code, errors = controller.end()
-        assert code == 0, errors
-        assert 'Traceback' not in errors
+        assert_clean(*controller.end())
         axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
         return sum(event.kind == EventKind.STICK and event.step <= last.step for event in axis.heard['mode_event'])
 
@@ -195,8 +177,7 @@ def test_parameters_and_restart_while_it_runs(capsys: Capture) -> None:
         assert answered(capsys, 'call', 'restart', '--node', name) == (
             0, 'the moves begin anew with the next measurement\n', '')
         wait_for(lambda: sum('the moves begin at' in line for line in logged) >= 2, 'the moves to begin anew')
-        code, errors = controller.end()
-    assert code == 0, errors
+        assert_clean(*controller.end())
 
 
 @pytest.mark.parametrize(('message', 'reported'), [
@@ -210,13 +191,58 @@ def test_measurements_that_are_none(message: JointState, reported: str) -> None:
         measurement(message, JointNames())
 
 
-def test_joints_have_the_prefix_of_the_axis() -> None:
-    message = JointState(name=['axis_slider', 'axis_drive', 'x_axis_slider', 'x_axis_drive'],
-                         position=[9.0, 9.0, 1.0, 2.0], velocity=[9.0, 9.0, 3.0, 4.0])
+def test_joints_have_the_prefix_of_the_axis_and_come_in_any_order() -> None:
+    message = JointState(name=['axis_slider', 'axis_drive', 'x_axis_drive', 'x_axis_slider'],
+                         position=[9.0, 8.0, 2.0, 1.0], velocity=[9.0, 8.0, 4.0, 3.0])
     assert measurement(message, JointNames.of('x_')) == (1.0, 3.0, 2.0, 4.0)
+    assert measurement(message, JointNames()) == (9.0, 9.0, 8.0, 8.0)
 
 
-def test_joints_come_in_any_order() -> None:
-    message = JointState(name=['other', 'axis_drive', 'axis_slider'], position=[9.0, 2.0, 1.0],
-                         velocity=[9.0, 4.0, 3.0])
-    assert measurement(message, JointNames()) == (1.0, 3.0, 2.0, 4.0)
+MODEL, STIFFER = (scene_text(load_scene('positioning', {'axis.drive_stiffness': stiffness}).values)
+                  for stiffness in (6e5, 9e5))
+MS = 1_000_000
+
+
+class Measurements:
+    """Two of a slide whose spring lets go; the answer to the second crosses part of the gap of friction."""
+
+    def __init__(self, asker: Client) -> None:
+        self._heard: dict[int, float] = {}
+        self._out = asker.node.create_publisher(JointState, 'joint_states', 10)
+        asker.node.create_subscription(JointState, 'joint_commands', self._hear, BEST_EFFORT)
+
+    def answer(self) -> float:
+        """Return the velocity, m/s; said until it is answered, for a measurement said again changes nothing."""
+        self._answer_to(0, 0.001)
+        return self._answer_to(10 * MS, 0.0006)
+
+    def _answer_to(self, nanoseconds: int, spring: float) -> float:
+        self._heard.clear()
+        message = JointState(name=['axis_slider', 'axis_drive'], position=[0.0, spring], velocity=[1e-4, 1e-4])
+        message.header.stamp.nanosec = nanoseconds
+
+        def ask() -> bool:
+            self._out.publish(message)
+            return nanoseconds in self._heard
+
+        wait_for(ask, 'an answer')
+        return self._heard[nanoseconds]
+
+    def _hear(self, message: JointState) -> None:
+        self._heard[message.header.stamp.nanosec] = message.velocity[0]
+
+
+@pytest.mark.parametrize('text', [None, 'no scene', STIFFER])
+def test_with_the_file_of_its_model_changed_or_gone(tmp_path: Path, text: str | None) -> None:
+    file = tmp_path / 'model.yaml'
+    file.write_text(MODEL)
+    with running(f'compensation.model:={file}', program=NAMES['compensated']) as controller, client() as asker:
+        measurements = Measurements(asker)
+        answers = [measurements.answer()]
+        file.unlink() if text is None else file.write_text(text)
+        for share in (0.5, 0.9):
+            assert asker.set_parameters(NAMES['compensated'], compensation__share=share).successful
+            answers.append(measurements.answer())
+        assert_clean(*controller.end())
+    first, other, same = answers
+    assert first == same > other
