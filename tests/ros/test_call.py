@@ -2,19 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip call` beside a node: what it answers, refuses, or that nobody answers; and two axes on one machine."""
 
+import os
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any, NamedTuple
 
 import pytest
+from rcl_interfaces.srv import GetParameters
+from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
 from stickslip_sim.recording import open_bag
 from tests.support.launch_files import launched
 from tests.support.node_processes import NodeProcess, assert_clean, running
-from tests.support.ros_nodes import Client, client
+from tests.support.ros_nodes import Client, bare_nodes, client
 from tests.support.tool import Capture, answered, refused, tool
 from tests.support.waiting import wait_for
 
@@ -104,17 +109,84 @@ def test_nobody_answers(folder: Path, capsys: Capture) -> None:
     assert '--node' in refused(capsys, 'call', 'reset', '--node', 'a b')
 
 
-def test_two_of_one_name(folder: Path, tmp_path: Path, capsys: Capture) -> None:
+class Double:
+    """A second node of the name of the axis; it has not heard of a client that greets it first, or hears nobody."""
+
+    def __init__(self, node: Any) -> None:
+        self._service = node.create_service(GetParameters, 'feed_axis/get_parameters', lambda _, response: response)
+        self._greetings = 0
+        self.is_deaf = False
+
+    def await_client(self) -> None:
+        """Miss the first greeting of the next client."""
+        self._greetings = 0
+
+    def hear(self) -> None:
+        """Answer what has come, but a first greeting."""
+        with self._service.handle:
+            request, header = self._service.handle.service_take_request(GetParameters.Request)
+        if request is not None and not self.is_deaf:
+            self._greetings += 1
+            if self._greetings > 1:
+                self._service.send_response(GetParameters.Response(), header)
+
+
+@pytest.fixture
+def double() -> Iterator[Double]:
+    is_over = Event()
+
+    def listen() -> None:
+        while not is_over.wait(0.01):
+            it.hear()
+
+    kind = partial(Node, namespace='/cell', start_parameter_services=False, enable_rosout=False)
+    with bare_nodes('feed_axis', kind=kind) as (node,):
+        it = Double(node)
+        thread = Thread(target=listen)
+        thread.start()
+        yield it
+        is_over.set()
+        thread.join()
+
+
+def test_two_of_one_name(folder: Path, double: Double, capsys: Capture) -> None:
     """Each would do it, and one of the answers be reported.  A killed one is in the graph for a while.
 
-    A call may have heard of one node only when it is made: then the other does not hear of it.
+    A call may have heard of one node only when it is made: so it greets both again, and so is the wait for both here.
     """
-    with running('time.rate:=200.0', '-r', '__ns:=/cell', folder=tmp_path):
-        assert wait_for(lambda: 'two nodes' in (line := refusal(capsys, 'step')) and line, 'both').startswith(
+    def in_this_process() -> str:
+        double.await_client()
+        return refusal(capsys, 'step')
+
+    def afresh() -> str:
+        double.await_client()
+        return tool('call', 'step', '--node', AXIS, **NO_PROFILES).stderr
+
+    for call in (in_this_process, afresh):
+        assert wait_for(lambda call=call: 'two nodes' in (line := call()) and line, 'both').startswith(
             f"stickslip: --node = '{AXIS}' is refused: must be the name of one node; two nodes named {AXIS} answer")
-        afresh = [tool('call', 'step', '--node', AXIS, **NO_PROFILES).stderr for _ in range(6)]
-        assert sum('two nodes' in line for line in afresh) >= 4    # 19 of 20; 5 of 20 where the second was greeted once
-    assert 'refused while time runs by itself' in refusal(capsys, 'step')    # it was killed
+    double.is_deaf = True    # as one that was killed
+    assert 'refused while time runs by itself' in refusal(capsys, 'step')
+
+
+def test_a_call_is_announced_often_unless_the_user_has_profiles(capsys: Capture, monkeypatch: pytest.MonkeyPatch
+                                                                ) -> None:
+    """Otherwise it would hear of a second node of one name seconds after the first."""
+    used = []
+
+    def init(**_: object) -> None:
+        used.append([os.environ[name] for name in sorted(NO_PROFILES) if os.environ.get(name)])
+        raise RuntimeError('that is all')
+
+    monkeypatch.setattr('rclpy.init', init)
+    for given in ('', '/home/me/mine.xml'):
+        for name in NO_PROFILES:
+            monkeypatch.setenv(name, given)
+        assert 'that is all' in refused(capsys, 'call', 'step')
+        assert [os.environ.get(name, '') for name in NO_PROFILES] == [given] * 2
+    (ours, *_), theirs = used
+    assert '<period><nanosec>100000000</nanosec></period>' in Path(ours).read_text()
+    assert theirs == [given] * 2
 
 
 def test_wrong_use(capsys: Capture) -> None:

@@ -249,10 +249,12 @@ def bare_nodes(*names: str, kind: Any = Node) -> Iterator[list[Any]]:
     context = Context()
     rclpy.init(context=context)
     nodes = [kind(name, context=context) for name in names]
-    yield nodes
-    for node in nodes:
-        node.destroy_node()
-    context.try_shutdown()
+    try:
+        yield nodes
+    finally:
+        for node in nodes:
+            node.destroy_node()
+        context.try_shutdown()
 
 
 @contextmanager
