@@ -83,6 +83,8 @@ def test_one_scene_with_one_change_is_the_same_however_it_is_given(tmp_path: Pat
     halves = text.replace('scene: positioning, ', ''), text.replace(', axis: {normal_force: 2500.0}', '')
     assert in_a_file == scene_at_start(given(tmp_path, '/feed_axis', *halves))
     assert in_a_file == scene_at_start(given(tmp_path, '/feed_axis', halves[0], single=single[:1]))
+    assert in_a_file == scene_at_start(given(tmp_path, '/feed_axis', text.replace('positioning', 'paper_fig7'),
+                                             single=single[:1]))
     assert (in_a_file.axis.normal_force, in_a_file.name) == (2500.0, 'positioning')
 
 

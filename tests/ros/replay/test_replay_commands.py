@@ -130,7 +130,8 @@ def axis() -> Iterator[Client]:
 
 class TestUnderWay:
     def test_an_axis_under_way_is_brought_to_its_start_again_and_again(self, axis: Client, recorded: Path) -> None:
-        assert axis.call(Step, 'step', steps=700, velocity=0.05, force=0.0).success
+        last = axis.call(Step, 'step', steps=700, velocity=0.05, force=0.0).state
+        wait_for(lambda: last in axis.heard['slider_state'], 'the states of before')
         axis.heard['slider_state'].clear()
         with replaying(recorded, 'rate:=50', 'playback_duration:=0.2', 'loop:=true') as process:
             ends = wait_for(lambda: len(found := states_of(axis, 200)) > 2 and found, 'three rounds')
@@ -197,6 +198,7 @@ class TestLockStep:
             code, errors = process.wait()
         assert code == 2
         assert "axis = '/feed_axis' is refused: must be a sim_node that runs; " in errors
+
 
 def states_of(axis: Client, step: int) -> list[Any]:
     """Return the states that were heard of a step."""
