@@ -20,7 +20,7 @@ from stickslip_sim.figures.cycles import cycle_figures
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinetic_table
 from stickslip_sim.friction.smooth import hyperbolic
 from stickslip_sim.proof.axes import instant, make, of_kind, run_events
-from stickslip_sim.study.theory import SliderOnDrive, critical_feed
+from stickslip_sim.study.critical import SliderOnDrive, critical_feed
 
 from .closed_forms import coulomb_cycle, den_hartog, healing_stick_time, slip_speed, swing_ratio
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from scipy.optimize import brentq
 
-from stickslip_sim.study.theory import SliderOnDrive
+from stickslip_sim.study.critical import SliderOnDrive
 
 
 class CoulombCycle(NamedTuple):

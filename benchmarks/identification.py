@@ -20,8 +20,7 @@ import numpy as np
 
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.identify import identify
-from stickslip_sim.identification.known_friction import known_friction
-from stickslip_sim.identification.measured_friction import slip_share, usual_cycles
+from stickslip_sim.identification.measured_friction import known_friction, slip_share, usual_cycles
 from stickslip_sim.identification.results import fitted_channels
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.characteristics import plot_known_friction

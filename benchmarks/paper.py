@@ -4,7 +4,7 @@
 
 import pathlib
 
-from stickslip_sim.study.theory import critical_drop, critical_feed
+from stickslip_sim.study.critical import critical_drop, critical_feed
 
 from . import naive_switching, sensitivity
 from .classics import DAMPING_RATIOS, DROP, EXACT, GROUPS, PAPER, Result, damped

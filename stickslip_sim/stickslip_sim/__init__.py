@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from .scene import Scene, scene_names
     from .sensitivity.sensitivities import Sensitivities, sensitivities
     from .simulation.simulator import Simulator
-    from .study.in_memory import critical, sweep, uncertainty
+    from .study.sweep import critical, sweep, uncertainty
 
 __all__ = [
     'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError', 'RecordingWarning', 'Run',

@@ -22,8 +22,7 @@ from mcap.records import Message
 from mcap.writer import CompressionType, Writer
 
 from stickslip_sim.bags import topics
-from stickslip_sim.bags.mcap_chunk import MessageBlock, bytes_of, messages_in
-from stickslip_sim.bags.mcap_file import McapFile
+from stickslip_sim.bags.mcap_file import McapFile, MessageBlock, bytes_of, messages_in
 from stickslip_sim.bags.message_layout import FRAME_SIZE as FRAME
 from stickslip_sim.bags.schemas import store_of
 from stickslip_sim.core.errors import RecordingError

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from stickslip_sim.check.limits import limits_of
-from stickslip_sim.check.outcomes import outcomes_of
+from stickslip_sim.check.limits import limits_of, outcomes_of
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import RunFacts, read_run, write_bag

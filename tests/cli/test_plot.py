@@ -10,7 +10,7 @@ import pytest
 
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.plots.run_panels import TimeWindow
+from stickslip_sim.plots.run import TimeWindow
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
 from stickslip_sim.runs.picture import sampled, windows_of

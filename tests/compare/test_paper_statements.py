@@ -10,8 +10,7 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.compare.fresh import simulate_densely
-from stickslip_sim.compare.statement import Finding, StatementOutcome
-from stickslip_sim.compare.statements import STATEMENTS, findings_on
+from stickslip_sim.compare.statements import STATEMENTS, Finding, StatementOutcome, findings_on
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import read_run

@@ -21,7 +21,7 @@ from dev.api import LISTS, quality
 from dev.files import ROOT
 from dev.pages import MADE
 from stickslip_sim.bags import bag_files, mcap_records, schemas, topics
-from stickslip_sim.check import recorded_steps
+from stickslip_sim.check import remake
 from stickslip_sim.cli.main import stickslip
 from stickslip_sim.core import errors
 from stickslip_sim.core.input_profile import MAX_SINUSOIDS
@@ -29,9 +29,9 @@ from stickslip_sim.friction.kinetic import MAX_BREAKPOINTS
 from stickslip_sim.inputs import csv_table, load_scene
 from stickslip_sim.recording import reader
 from stickslip_sim.runs import samples, simulated
-from stickslip_sim.scene import parameter, profile_schema, ros_yaml
+from stickslip_sim.scene import parameter, ros_yaml, schema
 from stickslip_sim.simulation.faults import MAX_FAULTS
-from stickslip_sim.study import folder
+from stickslip_sim.study import table
 from tests.support.floors import floors
 from tests.support.tool import Capture, answered
 
@@ -84,7 +84,7 @@ class TestApi:
         assert listed == kinds | {0}
 
     def test_the_parameters_of_scheduling_are_as_many_as_it_says(self) -> None:
-        source = text_of('stickslip_sim/stickslip_sim/ros/node/listed_parameters.py')
+        source = text_of('stickslip_sim/stickslip_sim/ros/node/parameters.py')
         names = [*re.findall(r"Entry\('(\w+)'", source), 'cpu_affinity']
         assert len(names) == 4
         assert 'and four of [scheduling](realtime.md)' in text_of('docs/api.md')
@@ -104,15 +104,15 @@ class TestLimits:
     @pytest.mark.parametrize(('what', 'limits'), [
         ('a scene, limits or other', (ros_yaml.SIZE_LIMIT, ros_yaml.MOST_NODES, ros_yaml.MOST_LEVELS,
                                       ros_yaml.MOST_NUMBERS, ros_yaml.LISTS_LIMIT)),
-        ('points of a profile', (profile_schema.MOST_POINTS, csv_table.MOST_BYTES)),
+        ('points of a profile', (schema.MOST_POINTS, csv_table.MOST_BYTES)),
         ('a text in a scene', (parameter.TEXT_LIMIT,)),
         ('breakpoints of a friction table', (MAX_BREAKPOINTS, MAX_SINUSOIDS, MAX_FAULTS)),
         ('a record of a bag', (mcap_records.RECORD_LIMIT >> 20,)),
         ('schemas, attachments', (bag_files.MOST_BESIDE >> 20,)),
         ('a definition', (schemas.LONGEST_DEFINITION, schemas.MOST_ELEMENTS)),
         ('a topic of a bag', (reader.MOST_TOPIC_BYTES >> 20,)),
-        ('the description of a sweep', (folder.LONGEST_SIDECAR >> 20,)),
-        ('steps that a recording may lack', (recorded_steps.MOST_MISSING,)),
+        ('the description of a sweep', (table.LONGEST_SIDECAR >> 20,)),
+        ('steps that a recording may lack', (remake.MOST_MISSING,)),
         ('samples and events', (simulated.MAX_SAMPLES, samples.MOST_IN_MEMORY, simulated.MAX_EVENTS)),
     ])
     def test_of_the_package(self, what: str, limits: tuple[int, ...]) -> None:

@@ -9,7 +9,7 @@ import pytest
 from stickslip_sim.axis import Friction
 from stickslip_sim.identification.axis_model import with_table
 from stickslip_sim.scene import Scene, scene_from_values
-from stickslip_sim.scene.friction import friction_of
+from stickslip_sim.scene.build import friction_of
 
 BACKWARDS: dict[str, object] = {
     'friction.static.backward.limit': 0.25, 'friction.kinetic.backward.initial': 0.13,

@@ -10,9 +10,15 @@ from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.direct import with_delay
 from stickslip_sim.identification.force_noise import NoiseFilter, filters_of, with_quiet_rests
 from stickslip_sim.identification.free_parameters import FreeParameter
-from stickslip_sim.identification.measured_inputs import profile_through
 from stickslip_sim.identification.motions import MeasuredMotion
-from stickslip_sim.identification.readings import LINE, Channel, InputReadings, SensorReadings, instants_of
+from stickslip_sim.identification.readings import (
+    LINE,
+    Channel,
+    InputReadings,
+    SensorReadings,
+    instants_of,
+    profile_through,
+)
 
 TIMES: Numbers = np.arange(4000, dtype=np.float64) * 1e-3
 NONE: Numbers = np.array([])

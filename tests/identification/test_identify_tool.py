@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip_sim.identification import many_fits, starts
+from stickslip_sim.identification import many_fits, stages
 from stickslip_sim.identification.many_fits import WorkFolder
 from stickslip_sim.identification.stages import fit_from
 from stickslip_sim.inputs import load_scene
@@ -183,7 +183,7 @@ def without_a_fit(tmp_path: Path, start: Path, capsys: Capture) -> tuple[Path | 
 def test_an_interrupted_one_ends_as_one_of_two_processes(without_a_fit: tuple[Path | str, ...], tmp_path: Path,
                                                          capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     whole, cut = tmp_path / 'whole', tmp_path / 'cut'
-    monkeypatch.setattr(starts, 'N_STARTS', 1)   # of eight: a few fits are enough
+    monkeypatch.setattr(stages, 'N_STARTS', 1)   # of eight: a few fits are enough
     assert answered(capsys, *without_a_fit, whole, '--workers', '2')[0] == 3
     done: list[int] = []
 

@@ -12,9 +12,8 @@ from benchmarks.identify.axes import DURATION, SyntheticAxis, axes
 from benchmarks.identify.measuring import measure
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.types import EventKind, Mode
-from stickslip_sim.identification.measured_inputs import travelled, velocity_within
 from stickslip_sim.identification.motions import motions_of, track_of
-from stickslip_sim.identification.readings import readings_of
+from stickslip_sim.identification.readings import readings_of, travelled, velocity_within
 
 LEAST = 2e-5   # m: what a sensor of 1 µm shows as a slip
 LATE = 0.02    # s

@@ -24,11 +24,19 @@ from stickslip_sim.identification.identified import (
     Misfit,
     StartEnd,
 )
-from stickslip_sim.identification.identified_scene import identified_text
+from stickslip_sim.identification.identified_scene import identified_text, posterior_text
 from stickslip_sim.identification.identify import identify
-from stickslip_sim.identification.known_friction import half_width, kinetic_of, known_friction, static_of
-from stickslip_sim.identification.measured_friction import binned, friction_points, phases, slip_share, usual_cycles
-from stickslip_sim.identification.posterior import posterior_text
+from stickslip_sim.identification.measured_friction import (
+    binned,
+    friction_points,
+    half_width,
+    kinetic_of,
+    known_friction,
+    phases,
+    slip_share,
+    static_of,
+    usual_cycles,
+)
 from stickslip_sim.identification.report import IDENTIFIED_VALUES
 from stickslip_sim.identification.results import (
     IDENTIFIED_PAGE,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
-from stickslip_sim.identification import starts
+from stickslip_sim.identification import stages
 from stickslip_sim.scene import changed
 from tests.support.measured_runs import OF_DRIVE, OF_FRICTION, OFF, as_run, between, estimate_of
 
@@ -78,7 +78,7 @@ def test_an_encoder_that_counts_from_elsewhere_is_not_taken_at_its_word(tmp_path
 @pytest.fixture
 def few_starts(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where none of them fits, two starts say as much as eight."""
-    monkeypatch.setattr(starts, 'N_STARTS', 2)
+    monkeypatch.setattr(stages, 'N_STARTS', 2)
 
 
 @pytest.mark.usefixtures('few_starts')

@@ -14,7 +14,7 @@ from stickslip_sim.inputs.csv_table import FORCES, SPEEDS, all_in_si, in_si
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene, parse_scene
-from stickslip_sim.scene.profile_schema import MOST_POINTS
+from stickslip_sim.scene.schema import MOST_POINTS
 from tests.support.tool import answered
 
 SCENE = """\

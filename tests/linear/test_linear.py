@@ -11,8 +11,7 @@ import mpmath as mp
 import pytest
 
 from stickslip_sim.linear.oscillator import Oscillator, bound, impulse, integrals, oscillator
-from stickslip_sim.linear.roots import first_passage
-from stickslip_sim.linear.zeros import finite_horizon, first_crossing, first_zero, householder, safe_step
+from stickslip_sim.linear.roots import finite_horizon, first_crossing, first_passage, first_zero, householder, safe_step
 
 KINDS = ('under-damped', 'over-damped', 'critical', 'no spring', 'no damper', 'unstable', 'soft', 'neither')
 

@@ -13,15 +13,18 @@ import pytest
 
 from stickslip_sim.linear.moments import moments
 from stickslip_sim.linear.oscillator import Oscillator, integrals, oscillator
-from stickslip_sim.linear.wave_products import (
+from stickslip_sim.linear.waves import (
+    TURN,
     cycle_within,
+    phase_at,
     ramped_integral,
     swept_integral,
+    turns,
     wave_integral,
     wave_moment,
     wave_products,
+    wave_response,
 )
-from stickslip_sim.linear.waves import TURN, phase_at, turns, wave_response
 
 KINDS = ('no damper', 'under-damped', 'near critical', 'over-damped', 'growing', 'no spring')
 

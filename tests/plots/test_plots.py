@@ -22,7 +22,7 @@ from stickslip_sim.core.types import Mode
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots import paper_panels, plot_run
 from stickslip_sim.plots.friction_fits import FittedLine, MeasuredPoints, plot_friction_fits, plot_speeds
-from stickslip_sim.plots.run_panels import BINS, DrawnRun, TimeWindow, band, bin_edges, drawn_run, mode_shares
+from stickslip_sim.plots.run import BINS, DrawnRun, TimeWindow, band, bin_edges, drawn_run, mode_shares
 from stickslip_sim.plots.style import legend_outside, thinned
 from stickslip_sim.runs import Run, simulate, simulate_events
 from stickslip_sim.runs.picture import sampled

@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 from stickslip_sim.bags import bag_files, mcap_records
 from stickslip_sim.cli.main import run as tool
-from stickslip_sim.compare import run_part
+from stickslip_sim.compare import look
 from stickslip_sim.compare.report import write_report
 from stickslip_sim.core.arrays import Columns
 from stickslip_sim.core.errors import InputError, RecordingError, RecordingWarning
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import RecordedRun, read_run, recorded_run, run_outline
-from stickslip_sim.recording.host_timing import gap_marks, late_marks
+from stickslip_sim.recording.run_outline import gap_marks, late_marks
 from stickslip_sim.runs import COLUMNS, Run, samples, simulate, simulate_events
 from stickslip_sim.runs.samples import joined
 from stickslip_sim.simulation.step_result import Mark
@@ -148,7 +148,7 @@ def test_the_marks_of_a_recorded_simulation_are_the_faults_of_its_scene(tmp_path
 def _short_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let no run be held."""
     monkeypatch.setattr(recorded_run, 'MOST_HELD', 10)
-    monkeypatch.setattr(run_part, 'MOST_HELD', 2500)
+    monkeypatch.setattr(look, 'MOST_HELD', 2500)
     monkeypatch.setattr(samples, 'MOST_HELD', 2500)
     monkeypatch.setattr(mcap_records, 'GATHERED_BYTES', 1 << 14)
     for module in (run_outline, run_outline):

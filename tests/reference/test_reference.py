@@ -15,12 +15,7 @@ from mpmath import mpf  # noqa: E402
 
 from stickslip_sim.reference.exact_run import Run  # noqa: E402
 from stickslip_sim.reference.roots import bernstein, first_root  # noqa: E402
-from stickslip_sim.reference.series import (  # noqa: E402
-    series,
-    to_binary,
-    to_decimal,
-    working,
-)
+from stickslip_sim.reference.series import series, to_binary, to_decimal, working  # noqa: E402
 from tests.reference.figures import agrees  # noqa: E402
 from tests.reference.inclusion import violations  # noqa: E402
 from tests.reference.scenes import Parameters, Scene, paper, random_scenes  # noqa: E402

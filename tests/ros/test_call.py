@@ -3,7 +3,7 @@
 """`stickslip call` beside a node: what it answers, refuses, or that nobody answers; and two axes on one machine."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
@@ -162,8 +162,12 @@ def test_two_of_one_name(folder: Path, double: Double, capsys: Capture) -> None:
         double.await_client()
         return tool('call', 'step', '--node', AXIS, **NO_PROFILES).stderr
 
+    def refused_for_two(call: Callable[[], str]) -> str:
+        line = call()
+        return line if 'two nodes' in line else ''
+
     for call in (in_this_process, afresh):
-        assert wait_for(lambda call=call: 'two nodes' in (line := call()) and line, 'both').startswith(
+        assert wait_for(partial(refused_for_two, call), 'both').startswith(
             f"stickslip: --node = '{AXIS}' is refused: must be the name of one node; two nodes named {AXIS} answer")
     double.is_deaf = True    # as one that was killed
     assert 'refused while time runs by itself' in refusal(capsys, 'step')

@@ -19,8 +19,7 @@ from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind, kinet
 from stickslip_sim.friction.kinetic import default_excess
 from stickslip_sim.friction.shapes import Decay
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.runs.batch import BatchFigures, run_batch
-from stickslip_sim.runs.batch_columns import BATCH_COLUMNS
+from stickslip_sim.runs.batch import BATCH_COLUMNS, BatchFigures, run_batch
 from stickslip_sim.solvers.exact.axis_figures import AxisFigures
 from stickslip_sim.solvers.exact.many_axes import book
 from tests.conftest import Program

@@ -13,8 +13,7 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.report.text import text_lines
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import changed
-from stickslip_sim.sensitivity.candidate_feeds import default_speeds, feeds
-from stickslip_sim.sensitivity.experiments import Wishes, designed
+from stickslip_sim.sensitivity.experiments import Wishes, default_speeds, designed, feeds
 from stickslip_sim.sensitivity.information import Sensors, covariance_after, run_slopes
 from stickslip_sim.sensitivity.report import feed_table, scene_file
 from stickslip_sim.sensitivity.sensitivities import sensitivities

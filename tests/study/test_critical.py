@@ -17,9 +17,17 @@ from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene
 from stickslip_sim.study import Variation
 from stickslip_sim.study.answer_changes import FAILED, NO, OPEN, YES, Answers, Doubt, Findings, find_transitions
-from stickslip_sim.study.critical import Critical, critical_of, default_range
+from stickslip_sim.study.critical import (
+    Critical,
+    critical_drop,
+    critical_feed,
+    critical_of,
+    default_range,
+    feed_of_theory,
+    healing_critical_feed,
+    table_fact,
+)
 from stickslip_sim.study.points import scene_at
-from stickslip_sim.study.theory import critical_drop, critical_feed, feed_of_theory, healing_critical_feed, table_fact
 from tests.support.axes import instant
 from tests.support.repository import ROOT
 
@@ -246,7 +254,7 @@ def test_inputs_that_change_with_time_are_refused() -> None:
 
 
 def test_the_closed_form_of_the_feed_is_the_one_of_the_drop() -> None:
-    from stickslip_sim.study.theory import SliderOnDrive
+    from stickslip_sim.study.critical import SliderOnDrive
 
     axis = load_scene('paper_fig4_constant', CONSTANT).axis
     assert feed_of_theory(axis) == critical_feed(SliderOnDrive(350.0, 6e5, 4000.0), 0.12 * 3432.3275)

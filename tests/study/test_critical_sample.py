@@ -18,10 +18,16 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.scene import changed
 from stickslip_sim.study import Saltelli, Study, Variation
 from stickslip_sim.study.answer_changes import ALL_OVER, NO, NOWHERE, OPEN, YES, Answers, Places, highest_changes
-from stickslip_sim.study.critical import ACCURACY, CriticalStudy, critical_of, critical_values, spreads_of
-from stickslip_sim.study.distribution import Distribution
+from stickslip_sim.study.critical import (
+    ACCURACY,
+    CriticalStudy,
+    critical_of,
+    critical_values,
+    feed_of_theory,
+    spreads_of,
+)
+from stickslip_sim.study.sample import Distribution
 from stickslip_sim.study.sweep import processes
-from stickslip_sim.study.theory import feed_of_theory
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused
 

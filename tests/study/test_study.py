@@ -19,9 +19,9 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, changed
 from stickslip_sim.study import MOTIONS, EvenGrid, Figures, Motion, Sobol, Study, variation
-from stickslip_sim.study.in_memory import critical, sweep, uncertainty
+from stickslip_sim.study.critical import critical_feed, feed_of_theory
 from stickslip_sim.study.points import runs_alone
-from stickslip_sim.study.theory import critical_feed, feed_of_theory
+from stickslip_sim.study.sweep import critical, sweep, uncertainty
 
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.24,
             'friction.kinetic.velocities': [0.0], 'friction.kinetic.coefficients': [0.12]}
@@ -252,7 +252,7 @@ def test_where_the_slider_only_just_comes_to_rest_the_events_are_those_of_the_re
 
 
 def test_critical_feed_of_light_damping_is_infinite_in_the_limit_only() -> None:
-    from stickslip_sim.study.theory import SliderOnDrive
+    from stickslip_sim.study.critical import SliderOnDrive
 
     assert critical_feed(SliderOnDrive(350.0, 6e5, 1e-3), 412.0) > 1.0
 

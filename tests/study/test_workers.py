@@ -22,10 +22,10 @@ from stickslip_sim.figures.point_figures import FIGURES
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.proof.axes import instant, of_kind
 from stickslip_sim.runs.batch import BatchFigures, Rounds, run_rounds
-from stickslip_sim.study import EvenGrid, Motion, Study, settling, variation
-from stickslip_sim.study.folder import POINTS_TABLE
-from stickslip_sim.study.resources import free_memory
+from stickslip_sim.study import EvenGrid, Motion, Study, points, variation
 from stickslip_sim.study.sweep import processes
+from stickslip_sim.study.table import POINTS_TABLE
+from stickslip_sim.study.workers import free_memory
 from tests.support.tool import Capture
 
 pytestmark = pytest.mark.slow
@@ -181,7 +181,7 @@ def heavy_fail(monkeypatch: pytest.MonkeyPatch) -> None:
         figures, rounds = run_rounds(*given, mass=mass, **more)
         return replace(figures, complete=figures.complete & (mass <= 350.0)), rounds
 
-    monkeypatch.setattr(settling, 'run_rounds', broken)
+    monkeypatch.setattr(points, 'run_rounds', broken)
 
 
 def test_a_sweep_has_the_word_failed_and_no_figures(flood: str, tmp_path: Path, capsys: Capture) -> None:
@@ -218,7 +218,7 @@ def test_a_figure_that_is_no_number_is_a_failure(name: str, monkeypatch: pytest.
         getattr(rounds, name)[0] = math.inf
         return figures, rounds
 
-    monkeypatch.setattr(settling, 'run_rounds', broken)
+    monkeypatch.setattr(points, 'run_rounds', broken)
     study = Study(load_scene('paper_fig7').values, EvenGrid((variation('axis.mass=300:400:2'),)), 5.0)
     assert study.figures(0, 2).motion.tolist() == [Motion.FAILED, Motion.STICK_SLIP]
 

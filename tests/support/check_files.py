@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from stickslip_sim.bags.topics import DRIVE_VELOCITY, RECORDED, SLIDER_STATE
-from stickslip_sim.check.limits import limits_of
-from stickslip_sim.check.outcomes import LimitOutcome, outcomes_of
+from stickslip_sim.check.limits import LimitOutcome, limits_of, outcomes_of
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import RunFacts, flat_layout, write_bag
 from stickslip_sim.recording.messages import Packer

@@ -20,7 +20,7 @@ from mcap.stream_reader import CRCValidationError, StreamReader, breakup_chunk
 from mcap.writer import MCAP0_MAGIC
 
 from ..core.errors import RecordingError
-from .mcap_chunk import Messages, bytes_of, messages_in
+from .mcap_file import Messages, bytes_of, messages_in
 
 RECORD_LIMIT = 32 << 20   # bytes of a record, and of what a chunk unpacks to; rosbag2 makes chunks of 1 to 4 MiB
 COMPRESSIONS = ('', 'zstd', 'lz4')

@@ -29,10 +29,7 @@ def own_solver(name: str, settings: tuple[Setting, ...], make: Callable[[Setting
 
 def contestants(*, quick: bool = False) -> list[Peer]:
     """Return all; quickly: the coarsest and the finest setting of each, without those that compile anew each time."""
-    from .peers import (
-        PEERS,  # which load much
-        sundials,
-    )
+    from .peers import PEERS, sundials
 
     stepped = [own_solver(f'fixed_step {method}', time_steps(1e-3, 1e-4, 1e-5), partial(_by_step, method))
                for method in ('euler', 'rk4')]

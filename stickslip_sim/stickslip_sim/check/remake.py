@@ -3,19 +3,158 @@
 """Steps made again: as a node made them, or as an offline run did."""
 
 from collections import deque
-from collections.abc import Collection, Iterator, Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from itertools import groupby
+from typing import Any, NamedTuple, Protocol
 
-from ..bags.topics import RIG_EVENT
+from ..bags.topics import (
+    DRIVE_VELOCITY,
+    EXTERNAL_FORCE,
+    FRICTION_FORCE,
+    MODE_EVENT,
+    PARAMETER_EVENTS,
+    RIG_EVENT,
+    SLIDER_STATE,
+    Topic,
+)
 from ..core.errors import InputError, RecordingError
 from ..core.types import Event, EventKind, Progress, Sample
-from ..recording import RecordedRun
+from ..recording import Bag, RecordedMessage, RecordedRun
 from ..recording.run import CHECKPOINT_FILE
 from ..runs import simulate
-from ..scene import Scene
-from ..simulation import Rig
-from .origin import Offline, begins_in_mid_run, checkpoint_of, offline_of
-from .recorded_steps import Orders, RecordedStep
+from ..scene import Scene, scene_from_values
+from ..simulation import Fault, Rig, RigEventKind, StepResult
+from .verification import Offline, begins_in_mid_run, checkpoint_of, offline_of
+
+# The messages of a recording, step by step.
+
+# What was ordered in a recorded run, done again to a rig.
+
+_ORDERS = RigEventKind.COMMAND_TIMEOUT, RigEventKind.FAULT_INJECTED, RigEventKind.FAULT_CLEARED
+_VALUES = {1: 'bool_value', 2: 'integer_value', 3: 'double_value', 4: 'string_value', 5: 'byte_array_value',
+           6: 'bool_array_value', 7: 'integer_array_value', 8: 'double_array_value', 9: 'string_array_value'}
+
+
+def is_order(bag: Bag, message: RecordedMessage) -> bool:
+    """Return whether a rig event was ordered from outside; the others follow by themselves."""
+    return bag.decode(message).kind in _ORDERS
+
+
+class Orders:
+    """Orders to a rig of a scene; `fixed` parameters stay as they are when others were changed while the axis ran."""
+
+    def __init__(self, bag: Bag, scene: Scene, rig: Rig, fixed: Collection[str]) -> None:
+        self._bag, self._rig, self._fixed = bag, rig, fixed
+        self._velocity: float | None = None    # for the next step, m/s
+        self._force: float | None = None       # N
+        self._values = scene.values
+        self._doers = {DRIVE_VELOCITY.type: self._command_velocity, EXTERNAL_FORCE.type: self._command_force,
+                       RIG_EVENT.type: self._event, PARAMETER_EVENTS.type: self._change}
+
+    def give(self, message: RecordedMessage) -> None:
+        """Order what a message says; raises RecordingError when the rig refuses."""
+        try:
+            self._doers[message.type](self._bag.decode(message))
+        except InputError as error:
+            raise self._refused(message.sequence, error) from None
+
+    def make_step(self) -> StepResult:
+        """Make the next step, under the commands given before it; raises RecordingError when the rig refuses them."""
+        velocity, force, self._velocity, self._force = self._velocity, self._force, None, None
+        try:
+            return self._rig.make_step(velocity, force)
+        except InputError as error:
+            raise self._refused(self._rig.step + 1, error) from None
+
+    def _refused(self, step: int, error: InputError) -> RecordingError:
+        return RecordingError(f'{self._bag.path}: the order before step {step} is refused: {error}')
+
+    def _command_velocity(self, message: Any) -> None:
+        self._velocity = message.velocity
+
+    def _command_force(self, message: Any) -> None:
+        self._force = message.force
+
+    def _event(self, message: Any) -> None:
+        if message.kind == RigEventKind.COMMAND_TIMEOUT:
+            self._rig.time_out(message.value)
+        elif message.kind == RigEventKind.FAULT_INJECTED:
+            self._rig.inject(Fault(message.id, message.fault, message.start, message.duration, message.value))
+        elif message.id:
+            self._rig.clear_fault(message.id)
+        else:
+            self._rig.clear_faults()
+
+    def _change(self, message: Any) -> None:
+        self._values = self._values | {parameter.name: _value(parameter.value)
+                                       for parameter in message.changed_parameters if parameter.name not in self._fixed}
+        self._rig.change_axis(scene_from_values(self._values).axis)
+
+
+def _value(value: Any) -> object:
+    """Return the value of a parameter; None when it has none."""
+    found: Any = getattr(value, _VALUES[value.type]) if value.type in _VALUES else None
+    return found.tolist() if hasattr(found, 'tolist') else found
+
+
+ORDERS = DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, PARAMETER_EVENTS
+_OUTPUTS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
+MOST_MISSING = 1_000_000           # steps that are made again without being compared
+_HALF, _WHOLE = 1 << 31, 1 << 32   # the file has 32 bits for the number of a step
+
+
+class RecordedStep(NamedTuple):
+    """What was recorded of a step: what was ordered before it, and what came of it, by type of topic."""
+
+    number: int
+    orders: list[RecordedMessage]
+    outputs: dict[Topic, list[RecordedMessage]]
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether the state at its end was recorded."""
+        return bool(self.outputs[SLIDER_STATE] and self.outputs[FRICTION_FORCE])
+
+
+def steps_of(run: RecordedRun, start: int) -> Iterator[RecordedStep]:
+    """Yield the recorded steps after `start` (−1: all); raises RecordingError when they do not follow each other.
+
+    An offline run has no orders: its commands only repeat what its input profiles did.
+    """
+    bag = run.bag
+    ordered = () if offline_of(run) else [topic for topic in ORDERS if topic.type in bag.topics.values()]
+    kinds = {bag.name_of(topic): topic for topic in (*ordered, *_OUTPUTS)}
+    messages = (message for message in bag.messages(kinds) if kinds[message.topic] != RIG_EVENT
+                or is_order(bag, message))
+    number, missing = start, 0
+    for sequence, group in groupby(_numbered(messages, kinds, start), key=lambda item: item[0]):
+        ahead = (sequence - number + _HALF) % _WHOLE - _HALF
+        if ahead < 0:
+            raise RecordingError(f'{bag.path}: step {number + ahead} after step {number}; give a recording of one run')
+        missing += max(ahead - 1, 0)
+        if missing > MOST_MISSING:
+            raise RecordingError(f'{bag.path}: step {number + ahead} after step {number}; a recording that lacks more '
+                                 f'than {MOST_MISSING} steps is damaged')
+        number += ahead
+        if number > start:     # what was in force at the checkpoint is recorded again
+            yield _step(number, [message for _, message in group], kinds)
+
+
+def _numbered(messages: Iterable[RecordedMessage], kinds: dict[str, Topic], start: int
+              ) -> Iterator[tuple[int, RecordedMessage]]:
+    """Yield messages with the number of their step; events at the very start belong to step 0, which is none."""
+    is_at_start = start < 0
+    for message in messages:
+        is_at_start = is_at_start and kinds[message.topic] != SLIDER_STATE
+        yield 0 if is_at_start and kinds[message.topic] == MODE_EVENT else message.sequence, message
+
+
+def _step(number: int, messages: list[RecordedMessage], kinds: dict[str, Topic]) -> RecordedStep:
+    outputs: dict[Topic, list[RecordedMessage]] = {topic: [] for topic in _OUTPUTS}
+    orders: list[RecordedMessage] = []
+    for message in messages:
+        outputs.get(kinds[message.topic], orders).append(message)
+    return RecordedStep(number, orders, outputs)
 
 
 class Made(NamedTuple):

@@ -18,11 +18,10 @@ from ..runs import Run
 from ..runs.samples import reduced
 from ..scene.load import values_in_file
 from ..scene.values import scene_text
+from .limits import LimitOutcome
 from .measures import TIMING_LIMIT
 from .observed_run import commands_of, gaps_in, observed_motion, timing_of
-from .origin import made_with
-from .outcomes import LimitOutcome
-from .verification import Verdict
+from .verification import Verdict, made_with
 
 _DRAWN = 'position', 'velocity', 'friction_force'   # of what if
 

@@ -34,8 +34,7 @@ def check(sources: tuple[str, ...], limits_file: str, duration: float | None, ch
     check_sources(sources, duration, changes)
     if len(set(sources)) < len(sources):
         raise click.UsageError('RUN_OR_SCENE: give each once.')
-    from ..check.limits import load_limits
-    from ..check.outcomes import outcomes_of
+    from ..check.limits import load_limits, outcomes_of
     from ..check.report import Checked, check_report, checks_as_values, complaint, junit_text
     from ..core.errors import InputError, RecordingError, VerdictError
     from ..report.values import json_text

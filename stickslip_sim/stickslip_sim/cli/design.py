@@ -39,8 +39,7 @@ def design(scene: str, parameters: str, duration: float, speeds: str | None, tra
 
     docs/sensitivities.md says how they are ranked.
     """
-    from ..sensitivity.candidate_feeds import default_speeds, speeds_of
-    from ..sensitivity.experiments import Wishes, designed
+    from ..sensitivity.experiments import Wishes, default_speeds, designed, speeds_of
     from ..sensitivity.information import Sensors
     from ..sensitivity.report import EXPERIMENT_PAGE, EXPERIMENT_SCENE, design_report, write_design
     from .progress import progress_bar

@@ -16,8 +16,8 @@ from ..friction import StaticLaw
 from ..plots.characteristics import Characteristics, Curve
 from ..runs import Run
 from ..scene import Scene, changed
-from ..scene.friction_schema import BACKWARD
 from ..scene.load import unscaled
+from ..scene.schema import BACKWARD
 from .look import look_at
 
 _BEYOND = 1.25   # of the limit velocity, and of the longest rest: how far the axes go

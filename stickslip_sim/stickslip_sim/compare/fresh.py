@@ -3,22 +3,33 @@
 """A scene, simulated and sampled so densely that no sample rate shows: at every event, and finely in between."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from ..core.arrays import Numbers
+from ..core.arrays import Columns, Numbers
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Instants
 from ..core.types import Event, Sample
+from ..identification.axis_model import AxisModel
+from ..identification.free_parameters import FreeParameter
+from ..identification.identified_scene import FORMS, with_measured_inputs
+from ..identification.motions import motions_of, track_of
+from ..identification.readings import SensorReadings, drives_directly, readings_of
+from ..identification.report import sensor_errors
+from ..identification.results import IDENTIFIED_SCENE
+from ..identification.run_start import from_measured_start
+from ..recording import MeasuredRun
 from ..runs import SimulatedRun, simulate_events
 from ..runs.samples import HeldSamples
 from ..runs.simulated import columns_of_rows
-from ..scene import Scene
-from .ring_down import closed_form
+from ..scene import Scene, changed
+from .cycle_figures import closed_form
 
 MAX_DRAWN_EVENTS = 50_000
 _IN_SPAN = 8, 200          # samples between two events, at least and at most
@@ -87,3 +98,109 @@ def _borders(profile: InputProfile, duration: float) -> Iterator[float]:
             return
         yield time
         time = profile.piece_at(time).end
+
+
+# A scene simulated beside a measured run: from where that starts, moved by what was measured of its drive and force.
+#
+# The inputs of the scene itself are another run's where it was identified from one: beside this run they say nothing.
+
+_COLUMNS = {'drive': ('drive_velocity', 'drive_position'), 'force': ('external_force',)}
+_PUSHED = 'external_force', 'drive_force'   # of a scene without a drive spring
+_FORCE = 'sensor.external_force.'
+
+
+class AsMeasured(NamedTuple):
+    """A scene simulated as a run was measured: its time 0 is at `zero` s of that run.
+
+    `position_rmse` (m) is the root mean square of measured less simulated position; None where none was measured.
+    """
+
+    run: SimulatedRun
+    zero: float
+    position_rmse: float | None
+
+
+def as_measured(scene: Scene, source: str, measured: MeasuredRun, duration: float | None) -> AsMeasured:
+    """Simulate a scene, named or in the file `source`, beside a measured run, for as long as that (None) or less (s).
+
+    Raises InputError where the run has not measured what moves the scene.
+    """
+    folder = Path(source).parent if Path(source).name == IDENTIFIED_SCENE else None
+    errors = sensor_errors(folder) if folder else {}
+    for section, columns in _columns(scene).items():
+        others = folder and (folder / FORMS[section].file).is_file()
+        if not set(columns) & set(measured.measured) and (others or columns == _PUSHED):
+            whose = f'that of {source} is the one of another run' if others else 'nothing else moves this scene'
+            raise InputError('RUN', measured.name, f'measured with its {" or ".join(columns)}: {whose}',
+                             f'import it with {columns[-1]}=COLUMN')
+    readings = _corrected(readings_of(measured, scene, {}), errors)
+    last = float(readings.times[-1])
+    if duration is not None and not 0.0 < duration <= last:
+        raise InputError('--duration', duration, f'> 0 and <= {last:g} s, as long as {measured.name}', 'drop it')
+    motions = motions_of(track_of(readings, readings.drive or scene.drive))
+    started, start, _ = from_measured_start(scene, (), readings, motions)
+    started = changed(started, {one.name: one.start for one in start})
+    driven, sections = _driven(started, readings, errors)
+    run = simulate_events(driven, last if duration is None else duration)
+    dense = densely_sampled(run, readings.times[readings.times <= run.end])
+    samples = dense.samples
+    if drives_directly(scene) and 'drive_force' in measured.measured:
+        samples = {**samples, 'drive_force': _read(samples['external_force'], errors)}
+    notes = tuple(_notes(measured, sections, errors, scene, started is not scene))
+    return AsMeasured(replace(dense, sampled=HeldSamples(samples), notes=notes), readings.shift,
+                      _position_rmse(samples, readings))
+
+
+def _columns(scene: Scene) -> Mapping[str, tuple[str, ...]]:
+    """Return what may be measured of each input of a scene."""
+    return {'force': _PUSHED} if drives_directly(scene) else _COLUMNS
+
+
+def _corrected(readings: SensorReadings, errors: Mapping[str, float]) -> SensorReadings:
+    """Return readings without the errors of their sensors: (measured − offset) / scale."""
+    return replace(readings, channels=tuple(
+        replace(one, values=(one.values - errors.get(f'sensor.{one.name}.offset', 0.0))
+                / errors.get(f'sensor.{one.name}.scale', 1.0)) for one in readings.channels))
+
+
+def _driven(scene: Scene, readings: SensorReadings, errors: Mapping[str, float]) -> tuple[Scene, tuple[str, ...]]:
+    """Return the scene with the measured inputs, less the errors of their sensor, and the sections that are."""
+    of_force = {name: value for name, value in errors.items() if name.startswith(_FORCE)}
+    model = AxisModel(scene, [FreeParameter(name, '', value, value, value) for name, value in of_force.items()],
+                      readings)
+    dynamics = model.dynamics(np.array(list(of_force.values()), dtype=np.float64))
+    assert dynamics is not None   # of the scene itself
+    driven, sections = with_measured_inputs(scene, readings, dynamics)
+    known = {'drive': readings.drive, 'force': readings.force}
+    if any(profile is not None and name not in sections for name, profile in known.items()):
+        raise InputError('RUN', f'{len(readings.times)} readings of what moves the axis',
+                         'fewer: a scene does not hold so many', 'import a part of it')
+    return driven, sections
+
+
+def _read(force: Numbers, errors: Mapping[str, float]) -> Numbers:
+    """Return what the sensor shows of the force on the slider, N."""
+    return errors.get(f'{_FORCE}offset', 0.0) + errors.get(f'{_FORCE}scale', 1.0) * force
+
+
+def _notes(measured: MeasuredRun, sections: tuple[str, ...], errors: Mapping[str, float], scene: Scene, is_moved: bool
+           ) -> Iterator[str]:
+    """Yield what moves the scene, and from where."""
+    for section in sections:
+        words = f'its {section} is the one measured in {measured.name}'
+        off = [f'{name.removeprefix(_FORCE)} {value:.6g}' for name, value in errors.items()
+               if section == 'force' and name.startswith(_FORCE)]
+        yield f'{words}, less the errors of its sensor: {", ".join(off)} (SI)' if off else f'{words}, as read'
+    if not drives_directly(scene) and not set(_COLUMNS['drive']) & set(measured.measured):
+        yield f'its drive is that of its scene: {measured.name} has none that was measured'
+    if is_moved:
+        yield f'it starts where {measured.name} does'
+
+
+def _position_rmse(samples: Columns, readings: SensorReadings) -> float | None:
+    channel = readings.channel('position')
+    if channel is None:
+        return None
+    inside = readings.times <= samples['time'][-1]
+    simulated = np.interp(readings.times[inside], samples['time'], samples['position'])
+    return float(np.sqrt(np.mean((channel.values[inside] - simulated)**2)))

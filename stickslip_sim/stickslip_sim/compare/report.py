@@ -19,12 +19,10 @@ from ..report.values import versions
 from ..runs import Run
 from ..runs.report import named_apart
 from ..scene import Scene
-from .as_measured import AsMeasured, as_measured
 from .cycle_figures import figures_of, write_beside
-from .fresh import simulate_densely
+from .fresh import AsMeasured, as_measured, simulate_densely
 from .pictures import draw
-from .statement import Finding, Statement, StatementOutcome
-from .statements import findings_on
+from .statements import Finding, Statement, StatementOutcome, findings_on
 
 _SHOWN = 12   # cycles of a run that are listed, the first and the last of them
 _CYCLE = tuple((head_of(name), name, *(('kN', 1e-3) if unit_of(name) == 'N' else read_in(unit_of(name)))) for name in (

@@ -22,13 +22,12 @@ from ..friction.refine import Breakpoint, shape_table
 from ..friction.shapes import Decay, Shape
 from ..scene import Scene
 from ..scene.build import Dynamics, dynamics_of
-from ..scene.friction_schema import backward_name, forward_name
+from ..scene.schema import backward_name, forward_name
 from ..simulation.simulator import Simulator
 from ..study.variation import changes_at
 from .free_parameters import DELAY, FreeParameter
-from .measured_inputs import shifted, travelled
 from .motions import MeasuredMotion
-from .readings import OUTPUTS, SensorReadings, drives_directly
+from .readings import OUTPUTS, SensorReadings, drives_directly, shifted, travelled
 
 # Friction of trial values: smooth laws by their tables, without a proof of their error; static not below kinetic.
 #

@@ -20,9 +20,8 @@ from ..core.input_profile import InputProfile
 from .axis_model import AxisModel
 from .free_parameters import FreeParameter, Region, values_at
 from .least_squares import minimise
-from .measured_inputs import travelled
 from .motions import track_of
-from .readings import SensorReadings, noise_of, quantum_of
+from .readings import SensorReadings, noise_of, quantum_of, travelled
 from .slip_features import MeasuredSlip, rest_force
 
 # Static friction from the measured break-aways alone: the force that each one took, over the normal force.

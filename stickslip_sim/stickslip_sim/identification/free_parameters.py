@@ -18,7 +18,7 @@ from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..scene import Scene
 from ..scene.parameter import Parameter
-from ..study.distribution import Distribution
+from ..study.sample import Distribution
 from ..study.uncertainty import load_uncertain, uncertain_of
 from ..study.variation import parameter_of
 from .readings import INPUTS, UNITS

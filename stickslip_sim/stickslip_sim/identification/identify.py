@@ -46,16 +46,13 @@ from .identified import (
 )
 from .identified_scene import with_measured_inputs
 from .many_fits import Keeper, fits_from
-from .measured_inputs import travelled
 from .motions import MeasuredMotion, motions_of, track_of
-from .other_laws import CRITERION, criterion_of, with_laws
-from .readings import SensorReadings, drives_directly, readings_of
+from .other_laws import CRITERION, along_the_run, best_of_slips, criterion_of, with_laws
+from .readings import SensorReadings, drives_directly, readings_of, travelled
 from .residual_tests import correlation_length, inflation_of, misfits_of_fit
 from .run_start import from_measured_start
 from .slip_features import shown_break_away
-from .stages import Ended, StageProgress, best_fit
-from .starts import starts_of
-from .wrong_model import along_the_run, best_of_slips
+from .stages import Ended, StageProgress, best_fit, starts_of
 
 # What the best fit amounts to: estimates with intervals, channels, tests, combinations, slips.
 

@@ -17,8 +17,7 @@ import numpy as np
 from ..core.arrays import Numbers
 from ..core.input_profile import InputProfile
 from ..figures.slips import stretches_of
-from .measured_inputs import travelled
-from .readings import SensorReadings
+from .readings import SensorReadings, travelled
 
 _NOISE, _OF_DRIVE = 0.01, 0.05   # of the highest speed, and of a low one of the drive: so much noise a slope may have
 _SLOWEST = 0.05          # quantile of the speeds of the drive

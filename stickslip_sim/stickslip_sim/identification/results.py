@@ -12,10 +12,8 @@ from ..plots.identified_motion import FittedChannel, plot_correlations, plot_fit
 from ..report.html import figure
 from ..runs import Run
 from .identified import ChannelFit, Identification
-from .identified_scene import identified_text, input_texts
-from .known_friction import known_friction
-from .measured_friction import phases, slip_share, usual_cycles
-from .posterior import posterior_text
+from .identified_scene import identified_text, input_texts, posterior_text
+from .measured_friction import known_friction, phases, slip_share, usual_cycles
 from .report import IDENTIFIED_VALUES, caption, report_page, report_values
 
 IDENTIFIED_SCENE, POSTERIOR = 'identified.yaml', 'posterior.yaml'

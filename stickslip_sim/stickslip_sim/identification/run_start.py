@@ -11,9 +11,8 @@ import numpy as np
 from ..core.input_profile import InputProfile
 from ..scene import Scene, changed
 from .free_parameters import FreeParameter
-from .measured_inputs import travelled
 from .motions import YIELDS, MeasuredMotion
-from .readings import Channel, SensorReadings, drives_directly
+from .readings import Channel, SensorReadings, drives_directly, travelled
 
 _FIRST = 10          # samples, of which the start is the mean
 _NOISES = 5.0        # standard deviations of one sample: nearer, the start of the scene is as good

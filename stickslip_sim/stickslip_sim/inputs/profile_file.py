@@ -17,8 +17,7 @@ from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..core.time_grid import decimal, multiples
 from ..scene.model import ProfileSource
-from ..scene.profile_schema import FILE_SETTINGS, MOST_POINTS
-from ..scene.schema import BY_NAME
+from ..scene.schema import BY_NAME, FILE_SETTINGS, MOST_POINTS
 from .csv_table import FORCES, LENGTHS, SPEEDS, TIMES, CsvTable, Wanted, wanted_column
 
 Given = Mapping[str, object]

@@ -13,8 +13,7 @@ from ..core.errors import InputError
 from ..core.types import Progress
 from ..scene import Scene, scene_from_values
 from ..scene.load import named, named_scene, of_a_scene, read_scene
-from ..scene.profile_schema import PROFILES
-from ..scene.schema import NULL
+from ..scene.schema import NULL, PROFILES
 from ..scene.values import overridden, stated
 from .profile_file import prepared, sections_with_file, with_profiles
 

@@ -17,20 +17,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
 from ..figures.catalogue import in_words
-from .style import (
-    BLACK,
-    BLUE,
-    DOUBLE_COLUMN,
-    GREY,
-    JOURNAL,
-    ORANGE,
-    RED,
-    labelled,
-    legend_of,
-    letter,
-    save,
-    thinned,
-)
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, ORANGE, RED, labelled, legend_of, letter, save, thinned
 
 _ROW = 1.7        # in
 _LEGEND = 0.5     # in

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bags import topics
-from ..bags.mcap_chunk import MessageBlock
+from ..bags.mcap_file import MessageBlock
 from ..bags.message_layout import MessageRows, record_of
 from ..bags.schemas import MessageCodec, flat_layout
 from ..bags.topics import Topic

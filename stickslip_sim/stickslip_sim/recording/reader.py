@@ -17,11 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bags.bag import METADATA, NEXT_FILE, is_by_wall_clock
-from ..bags.bag_files import RecordedFile, RecordedMessage, files_of, goes_on_empty
-from ..bags.mcap_chunk import Messages
+from ..bags.bag_files import Block, RecordedFile, RecordedMessage, TopicColumns, column_blocks, files_of, goes_on_empty
+from ..bags.mcap_file import Messages
 from ..bags.message_layout import Layout, layout_of
 from ..bags.schemas import Typestore, store_of, understood
-from ..bags.topic_columns import Block, TopicColumns, column_blocks
 from ..bags.topics import MODE_EVENT, Topic
 from ..core.errors import InputError, RecordingError, RecordingWarning, one_line
 from ..core.types import Event, EventKind, Mode

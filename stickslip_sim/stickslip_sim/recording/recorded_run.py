@@ -25,15 +25,22 @@ from ..core.errors import RecordingError, one_line
 from ..core.types import Event, Mode
 from ..figures.cycles import Summary, summary
 from ..runs import COLUMNS
-from ..runs.run import recorded_normal_force
+from ..runs.run import Views, recorded_normal_force
 from ..runs.samples import MOST_HELD, joined
-from ..runs.views import Views
 from ..scene import Scene
 from ..simulation import RigEventKind
 from ..simulation.step_result import Mark, TimedRigEvent, marks_of_events, marks_of_faults
-from .host_timing import LATE_FIELDS, gap_marks, late_marks
 from .reader import EVENT_FIELDS, Bag
-from .run_outline import RunOutline, check_samples, of_the_same_steps, outline_of, paired_blocks
+from .run_outline import (
+    LATE_FIELDS,
+    RunOutline,
+    check_samples,
+    gap_marks,
+    late_marks,
+    of_the_same_steps,
+    outline_of,
+    paired_blocks,
+)
 
 # The normal force beside the friction forces of a bag, where its scene lets it vary: no message has it.
 

@@ -11,8 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..bags.bag import ONE_FILE, BagWriter, Split
-from ..bags.metadata import ros_distro
+from ..bags.bag import ONE_FILE, BagWriter, Split, ros_distro
 from ..bags.topics import Topic, recorded_topics
 from ..core.hot_path import hot_path
 from ..core.version import __version__

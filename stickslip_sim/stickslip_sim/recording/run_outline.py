@@ -3,17 +3,18 @@
 """A long recorded run looked through once: where it begins and ends, its transitions, what its samples come to."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..bags.topics import FRICTION_FORCE, MODE_EVENT, SLIDER_STATE, Topic
-from ..core.arrays import Columns
+from ..core.arrays import Columns, Numbers
 from ..core.errors import RecordingError
 from ..core.types import Event, Mode
 from ..runs.samples import GATHERED, joined
+from ..simulation.step_result import Mark
 from .reader import EVENT_FIELDS, Bag
 
 # The states and the friction of the same steps: of columns, or block by block as they stand in a bag.
@@ -224,3 +225,44 @@ class _DriveAtEvents:
         self._is_cut |= len(time) > GATHERED
         self._held = [{name: column[-GATHERED:] for name, column in states.items()}]
         self._rows = len(self._held[0]['time'])
+
+
+# Where the machine, or who commanded, was late in a run of the node: what looks like a bad controller and is none.
+
+_USUAL = 5.0      # median intervals: longer is a gap between commands
+_FEWEST = 20      # intervals of which one is usual
+_LONGEST = 100_000   # steps: longer ones count as that
+LATE_FIELDS = 'step', 'steps', 'lateness_max', 'overruns'
+
+
+def late_marks(timing: Mapping[str, Numbers], rate: float, limit: float) -> list[Mark]:
+    """Return the windows of the timing reports (LATE_FIELDS) in which a step was later than a limit, s."""
+    late = timing['lateness_max'] > limit
+    if not late.any():
+        return []
+    label = f'late ≤ {1e3 * timing["lateness_max"][late].max():.3g} ms'
+    return [Mark(max(step - steps, 0.0) / rate, step / rate, label, int(overruns), is_of_host=True)
+            for step, steps, overruns in zip(*(timing[name][late].astype(np.float64).tolist()
+                                               for name in ('step', 'steps', 'overruns')))]
+
+
+def gap_marks(blocks: Iterable[Columns], rate: float, limit: float) -> list[Mark]:
+    """Return where no command came for longer than a limit (s) and several times as long as is usual in the run.
+
+    Their times (s) come in blocks.
+    """
+    latest: Numbers = np.empty(0)
+    counts = np.zeros(_LONGEST + 1, dtype=np.int64)   # of intervals, by their steps
+    longer: list[tuple[float, float]] = []
+    for block in blocks:
+        times = np.append(latest, block['time'])
+        latest, intervals = times[-1:], np.diff(times)
+        counts += np.bincount(np.rint(np.minimum(intervals * rate, _LONGEST)).astype(np.int64), minlength=_LONGEST + 1)
+        places = np.flatnonzero(intervals > limit)
+        longer += zip(times[places].tolist(), times[places + 1].tolist())
+    if counts.sum() < _FEWEST:
+        return []
+    usual = int(np.searchsorted(np.cumsum(counts), 0.5 * counts.sum())) / rate
+    gaps = [(begin, end) for begin, end in longer if end - begin > _USUAL * usual]
+    longest = max((end - begin for begin, end in gaps), default=0.0)
+    return [Mark(begin, end, f'gaps ≤ {1e3 * longest:.3g} ms', is_of_host=True) for begin, end in gaps]

@@ -12,10 +12,9 @@ from mpmath import mpf
 from ..core.errors import SolverError
 from .exact_run import Event, Run, Stretch, sample
 from .flow import Flow, State
-from .inputs import Input, Signal
 from .modes import ACCELERATE, COAST, DECELERATE, Mode, Slip, Stick, Yield, word
 from .physics import Physics
-from .problem import Problem
+from .problem import Input, Problem, Signal
 from .search import HOLDS, LIMIT, SPEED_DOWN, SPEED_UP, SURPLUS_UP, TURNS, Step, slip_step, stick_step, yield_step
 from .series import working
 

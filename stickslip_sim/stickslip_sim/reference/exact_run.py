@@ -13,10 +13,9 @@ from mpmath import mpf
 
 from ..core import types
 from .flow import Flow, State, after
-from .inputs import Input, Signal
 from .modes import Mode, word
 from .physics import Physics
-from .result import Final, ReferenceRun
+from .problem import Final, Input, ReferenceRun, Signal
 from .series import working
 
 

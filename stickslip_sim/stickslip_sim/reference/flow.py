@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 from mpmath import mp, mpf, sqrt
 
-from .inputs import Signal
+from .problem import Signal
 from .series import Series, combine, integral, series, to_decimal, value
 
 SPAN = 4  # a step is at most SPAN / ρ: longer ones need more terms, shorter ones are more

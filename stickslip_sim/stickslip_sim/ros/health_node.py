@@ -13,7 +13,7 @@ from ..core.errors import StickslipError
 from ..scene.load import NODE
 from ..scene.parameter import Parameter
 from .node.endpoints import subscription
-from .node.listed_parameters import ListedNode
+from .node.parameters import ListedNode
 from .programs import GivenParameters
 
 _PATIENCE = Parameter('patience', 'double', 8.0, 's', 'to wait for the axis; finding it may take 3 s', 1.0, 3600.0)

@@ -15,7 +15,7 @@ from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Sample
 from ..figures.wording import headline
 from ..plots import plot_run
-from ..plots.run_panels import TimeWindow, drawn_run
+from ..plots.run import TimeWindow, drawn_run
 from ..scene import Scene
 from .run import LOAD_COLUMN, Run, normal_force_of
 from .samples import reduced

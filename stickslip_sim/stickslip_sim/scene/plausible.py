@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 
 from ..core.errors import InputError
-from .friction_schema import backward_name
+from .schema import backward_name
 
 MEANT = '--meant'          # the option of the tool
 FASTEST = 3.0              # m/s: 180 m/min, above the rapid traverse of linear motors

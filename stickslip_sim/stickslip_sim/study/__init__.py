@@ -9,8 +9,7 @@ A study is plain data and can be sent to other processes; `figures` of a stretch
 """
 
 from ..figures.point_figures import MOTIONS, Figures, Motion
-from .distribution import Distribution
-from .sample import EvenGrid, Saltelli, Sobol
+from .sample import Distribution, EvenGrid, Saltelli, Sobol
 from .study import Study
 from .variation import Variation, variation
 

@@ -20,13 +20,11 @@ from ..plots.style import Scale, unit_read
 from ..plots.uncertainty import Shares, Spread, plot_uncertainty
 from ..runs import SimulatedRun, simulate_events
 from ..scene import Scene
-from .critical import CriticalSpread, CriticalStudy
-from .points import runs_of_run, scene_at, works_in_batches
+from .critical import CriticalSpread, CriticalStudy, feed_of_theory
+from .points import runs_of_run, scene_at, sliding_slope, works_in_batches
 from .sample import EvenGrid, Saltelli
-from .settling import sliding_slope
 from .study import Study
 from .table import TableColumns, figures_among
-from .theory import feed_of_theory
 from .uncertainty import SPREAD, Index, Uncertainty, spread_of
 from .variation import Variation, place_of
 

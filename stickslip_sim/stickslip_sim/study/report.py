@@ -16,13 +16,20 @@ from ..report.model import Part, Section, Table, facts
 from ..report.quantity import counted, quantities
 from ..scene import Scene
 from .answer_changes import NO, YES, Findings, Transition
-from .critical import ACCURACY, STARTS, Critical, CriticalSpread, CriticalStudy
-from .distribution import LAWS
-from .sample import Saltelli
+from .critical import (
+    ACCURACY,
+    STARTS,
+    Critical,
+    CriticalSpread,
+    CriticalStudy,
+    TableFact,
+    breakpoints_between,
+    feed_of_theory,
+)
+from .sample import LAWS, Saltelli
 from .study import Study
 from .sweep import Swept
 from .table import TableColumns
-from .theory import TableFact, breakpoints_between, feed_of_theory
 from .uncertainty import PERCENTS, Index, Uncertainty
 from .variation import with_place
 

@@ -3,15 +3,180 @@
 """The points of a study: a grid over all variations, a Sobol sample between their ends, or one of distributions."""
 
 import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError
-from .distribution import Correlations, Distribution, correlated, factor_of
-from .variation import Variation
+from ..scene import Parameter
+from ..scene.ros_yaml import section
+from .variation import Variation, parameter_of
+
+# The distribution of a parameter that is not known exactly, cut where the user cuts it.
+
+_TAILS = 4.0     # standard deviations: 6e-5 of the probability lies beyond
+_WIDEST = 1e6    # times the median, one standard deviation away
+
+
+class Rule(NamedTuple):
+    """The condition on one number of a law, in words and as a test of all numbers."""
+
+    number: str
+    allowed: str
+    holds: Callable[..., bool]
+
+
+class Law(NamedTuple):
+    """A family of distributions: the `numbers` that choose one, their conditions, and that one as scipy has it.
+
+    `ends`: where tails without an end may be cut; None where there are none.
+    """
+
+    numbers: tuple[str, ...]
+    rules: tuple[Rule, ...]
+    frozen: Callable[..., Any]
+    ends: Callable[..., tuple[float, float]] | None = None
+
+
+def _normal(mean: float, standard_deviation: float) -> Any:
+    from scipy.stats import norm
+
+    return norm(mean, standard_deviation)
+
+
+def _lognormal(median: float, geometric_standard_deviation: float) -> Any:
+    from scipy.stats import lognorm
+
+    return lognorm(np.log(geometric_standard_deviation), scale=median)
+
+
+def _uniform(low: float, high: float) -> Any:
+    from scipy.stats import uniform
+
+    return uniform(low, high - low)
+
+
+def _triangular(low: float, mode: float, high: float) -> Any:
+    from scipy.stats import triang
+
+    return triang((mode - low) / (high - low), low, high - low)
+
+
+LAWS = {
+    'normal': Law(
+        ('mean', 'standard_deviation'), (Rule('standard_deviation', '> 0', lambda mean, sd: sd > 0.0),),
+        _normal, lambda mean, sd: (mean - _TAILS * sd, mean + _TAILS * sd)),
+    'lognormal': Law(
+        ('median', 'geometric_standard_deviation'),
+        (Rule('median', '> 0', lambda median, sd: median > 0.0),
+         Rule('geometric_standard_deviation', '> 1 and <= 1e6: two thirds lie between median / it and median * it',
+              lambda median, sd: 1.0 < sd <= _WIDEST)),
+        _lognormal, lambda median, sd: (median / sd**_TAILS, median * sd**_TAILS)),
+    'uniform': Law(('low', 'high'), (Rule('high', 'above low', lambda low, high: low < high),), _uniform),
+    'triangular': Law(
+        ('low', 'mode', 'high'),
+        (Rule('high', 'above low', lambda low, mode, high: low < high),
+         Rule('mode', 'from low to high', lambda low, mode, high: low <= mode <= high)), _triangular),
+}
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A parameter of a scene, or an element of a list, that follows one of `LAWS` between `low` and `high`.
+
+    `numbers` are those of the law, in its order and in the unit of the parameter.
+    """
+
+    name: str
+    law: str
+    numbers: tuple[float, ...]
+    low: float
+    high: float
+
+    @property
+    def unit(self) -> str:
+        """Of the parameter, as in the schema."""
+        return parameter_of(self.name)[0].unit
+
+    @property
+    def kept(self) -> float:
+        """The probability between `low` and `high` of the law before it was cut."""
+        return self._shares[1] - self._shares[0]
+
+    def at(self, shares: Numbers) -> Numbers:
+        """Return the values below which these shares of the probability lie."""
+        values = self._frozen.ppf(self._shares[0] + self.kept * shares)
+        return np.asarray(np.clip(values, self.low, self.high))   # rounding alone leaves the range
+
+    @cached_property
+    def _frozen(self) -> Any:
+        return LAWS[self.law].frozen(*self.numbers)
+
+    @cached_property
+    def _shares(self) -> tuple[float, float]:
+        low, high = self._frozen.cdf([self.low, self.high]).tolist()
+        return low, high
+
+
+# Correlations of parameters that are not known exactly: given pair by pair, drawn by a Gaussian copula.
+#
+#     correlations:
+#       axis.mass: {axis.normal_force: 0.93, friction.static.limit: -0.2}
+#
+# A pair that is not named is independent.  The numbers are of the normal scores Φ⁻¹(share) of two parameters: for
+# normal distributions of the parameters themselves, for lognormal ones of their logarithms.
+
+Correlations = tuple[tuple[float, ...], ...]   # (k, k), in the order of the parameters
+
+_PAGE = 'docs/maps.md'
+_LEAST = 1e-12          # of the eigenvalues: with less, rounding decides whether such numbers exist
+_OPEN = 2.0**-54        # a share of 0 or 1 has no normal score
+
+
+def correlations_of(names: Sequence[str], given: object) -> Correlations | None:
+    """Return the correlations of parameters from a section of a file; None where it gives none.  Raises InputError."""
+    if given is None:
+        return None
+    matrix = np.eye(len(names))
+    seen: set[frozenset[str]] = set()
+    for first, second, number in _pairs(names, section('correlations', given, tuple(names), _PAGE)):
+        i, j = names.index(first), names.index(second)
+        pair = frozenset((first, second))
+        if i == j or pair in seen:
+            raise InputError(f'correlations.{first}', second, 'another parameter, each pair once', 'drop this one')
+        seen.add(pair)
+        matrix[i, j] = matrix[j, i] = number
+    if np.linalg.eigvalsh(matrix)[0] < _LEAST:
+        raise InputError('correlations', [list(row) for row in matrix.tolist()], 'a positive definite matrix: no '
+                         'numbers are correlated like this', 'bring those that are near 1 or -1 nearer to 0')
+    return tuple(map(tuple, matrix.tolist())) if seen else None
+
+
+def correlated(shares: Numbers, factor: Numbers) -> Numbers:
+    """Return shares (n, k) with the correlations of `factor_of`, from independent ones."""
+    from scipy.special import ndtr, ndtri
+
+    return np.asarray(ndtr(ndtri(np.clip(shares, _OPEN, 1.0 - _OPEN)) @ factor.T))
+
+
+def factor_of(correlations: Correlations) -> Numbers:
+    """Return the lower triangular L with L Lᵀ the correlations; raises ValueError where no such numbers exist."""
+    return np.asarray(np.linalg.cholesky(np.array(correlations)))
+
+
+def _pairs(names: Sequence[str], given: Mapping[str, object]) -> Iterator[tuple[str, str, float]]:
+    for first, others in given.items():
+        found = section(f'correlations.{first}', others, tuple(names), _PAGE)
+        for second, number in found.items():
+            entry = Parameter(f'correlations.{first}.{second}', 'double', None, '', '', low=-1.0, high=1.0)
+            checked = entry.checked(number)
+            assert isinstance(checked, float)
+            yield first, second, checked
+
 
 MOST_DRAWN = 1 << 30   # points of a Sobol sequence of scipy
 LEAST_SAMPLES, MOST_SAMPLES = 16, 1 << 24

@@ -19,9 +19,8 @@ from ..report.values import versions
 from ..runs.simulated import check_run_times
 from ..scene import Scene, scene_from_values
 from ..scene.load import named, parse_scene
-from .distribution import Distribution
 from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
-from .sample import EvenGrid, Saltelli, Sampling, Sobol
+from .sample import Distribution, EvenGrid, Saltelli, Sampling, Sobol
 from .variation import Variation, checked
 
 MOST_VARIATIONS = 10

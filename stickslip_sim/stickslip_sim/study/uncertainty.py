@@ -21,8 +21,7 @@ from ..figures.point_figures import Motion
 from ..scene import Parameter
 from ..scene.load import named, read_text
 from ..scene.ros_yaml import read_yaml, section
-from .distribution import LAWS, Correlations, Distribution, Law, correlations_of
-from .sample import Saltelli
+from .sample import LAWS, Correlations, Distribution, Law, Saltelli, correlations_of
 from .study import MOST_VARIATIONS
 from .variation import parameter_of
 

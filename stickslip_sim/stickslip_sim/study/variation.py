@@ -12,10 +12,8 @@ import numpy as np
 from ..core.arrays import Numbers
 from ..core.errors import InputError, suggestion
 from ..report.quantity import quantity
-from ..scene.friction_schema import forward_name
 from ..scene.parameter import Parameter
-from ..scene.profile_schema import PROFILES
-from ..scene.schema import BY_NAME
+from ..scene.schema import BY_NAME, PROFILES, forward_name
 
 MOTION_SECTIONS = ('axis', 'contact', 'friction', *PROFILES, 'initial', 'solver')
 _ALONG = {   # where an element of a list is

@@ -11,12 +11,9 @@ import pytest
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.friction import SmoothKinetic, smooth
-from stickslip_sim.identification.curve.best_law import fit_laws, sides, sign_changes
-from stickslip_sim.identification.curve.law_fit import Fit
-from stickslip_sim.identification.curve.law_in_scene import Origin, scene_with_friction
+from stickslip_sim.identification.curve.best_law import Origin, fit_laws, scene_with_friction, sides, sign_changes
+from stickslip_sim.identification.curve.law_fit import SMOOTH_FORMS, Fit, fit_smooth, fit_table, points_table
 from stickslip_sim.identification.curve.measured_curve import FrictionCurve
-from stickslip_sim.identification.curve.smooth_fit import SMOOTH_FORMS, fit_smooth
-from stickslip_sim.identification.curve.table_fit import fit_table, points_table
 
 SPEEDS: Numbers = np.geomspace(1e-4, 0.2, 40).astype(np.float64)
 LAWS: dict[str, SmoothKinetic] = {

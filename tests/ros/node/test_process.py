@@ -13,7 +13,7 @@ from stickslip_sim.core.errors import InputError, RecordingWarning
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag
-from stickslip_sim.ros.node.listed_parameters import cores_of
+from stickslip_sim.ros.node.parameters import cores_of
 from stickslip_sim.scene.load import parse_scene
 from tests.support.busy_machine import judged_by_time
 from tests.support.forked_programs import ended_at_once

@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 
 from stickslip_msgs.srv import InjectFault, Step
-from stickslip_sim.check.limits import limits_of
-from stickslip_sim.check.outcomes import outcomes_of
+from stickslip_sim.check.limits import limits_of, outcomes_of
 from stickslip_sim.check.verification import verify
 from stickslip_sim.check.what_if import other_run, other_scene
 from stickslip_sim.core.errors import InputError

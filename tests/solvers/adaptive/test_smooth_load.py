@@ -17,7 +17,7 @@ from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import adaptive
-from stickslip_sim.solvers.adaptive.mode_integration import SAMPLED_AT, first_fall
+from stickslip_sim.solvers.adaptive.engine import SAMPLED_AT, first_fall
 from tests.support.axes import instant
 from tests.support.tool import Capture, answered
 

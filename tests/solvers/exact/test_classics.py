@@ -40,7 +40,7 @@ from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.figures.cycles import cycle_figures
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.simulation.simulator import Simulator
-from stickslip_sim.study.theory import critical_drop, critical_feed, healing_critical_feed
+from stickslip_sim.study.critical import critical_drop, critical_feed, healing_critical_feed
 from tests.support.axes import RIGID, instant, of_kind, paper_axis, run_events
 
 HEALING_FEED = healing_critical_feed(UNDAMPED.stiffness, NORMAL * 0.12 / HEALING.time_constant)   # m/s

@@ -11,10 +11,8 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
-from stickslip_sim.compare.contact_statements import CONTINUITY
 from stickslip_sim.compare.fresh import simulate_densely
-from stickslip_sim.compare.statement import StatementOutcome
-from stickslip_sim.compare.statements import findings_on
+from stickslip_sim.compare.statements import CONTINUITY, StatementOutcome, findings_on
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, steps
 from stickslip_sim.core.types import Event, EventKind, Mode

@@ -15,11 +15,18 @@ import numpy as np
 from ...report.quantity import counted
 from ...scene import Scene
 from ...scene.schema import BY_NAME
-from .best_law import Fits, fit_laws, sides, sign_changes
-from .law_fit import MISSED, SPARE, Fit
-from .law_in_scene import origin_of, scene_with_friction, scene_with_friction_backwards, short_text
+from .best_law import (
+    Fits,
+    fit_laws,
+    origin_of,
+    scene_with_friction,
+    scene_with_friction_backwards,
+    short_text,
+    sides,
+    sign_changes,
+)
+from .law_fit import MISSED, SPARE, Fit, points_table
 from .measured_curve import FrictionCurve, Units
-from .table_fit import points_table
 
 BEST, POINTS = 'best', 'points'
 _PATTERN = 0.05   # a chance below it is called a pattern

@@ -27,7 +27,7 @@ from ...scene.schema import JOINT_PREFIX
 from ...simulation import Measured
 from ..node.endpoints import publisher, subscription
 from ..node.joints import JointNames
-from ..node.listed_parameters import ListedNode
+from ..node.parameters import ListedNode
 from ..node.time_services import answer
 from ..programs import GivenParameters
 

@@ -16,10 +16,9 @@ from ...core.time_grid import Grid
 from ...realtime.commands import CommandSlot, Watchdog
 from ...realtime.pacing import step_clock
 from ...realtime.step_loop import Sink, StepLoop
-from ...realtime.verdict import verdict
+from ...realtime.timing import verdict
 from ...recording import RECORDED, RunFacts, messages
-from ...runs.receipt import CostMeter
-from ...runs.simulated import warm_up
+from ...runs.simulated import CostMeter, warm_up
 from ...scene.load import NODE
 from ...scene.model import Scene
 from ..programs import GivenParameters
@@ -27,14 +26,12 @@ from . import endpoints
 from .clock import ClockIn, ClockOut
 from .endpoints import publisher
 from .joints import JointNames, JointStates
-from .listed_parameters import scheduling_of
-from .parameters import SceneNode
-from .periodic_report import PeriodicReport, run_receipt
+from .parameters import SceneNode, scheduling_of
 from .publishers import DeferredLog, Publishers, RigEvents
 from .record_service import RecordService
-from .standard_services import offer_standard_services
+from .reports import PeriodicReport, run_receipt
 from .subscribers import HidingNode, Subscribers
-from .time_services import FaultServices, TimeServices
+from .time_services import FaultServices, TimeServices, offer_standard_services
 
 _LEAD = 20_000_000   # ns from the instant that stamps count from to step 0, which finds all prepared then
 

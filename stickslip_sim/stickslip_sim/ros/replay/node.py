@@ -17,7 +17,7 @@ from ...bags.topics import CLOCK
 from ...core.time_grid import NANOSECONDS
 from ...recording.playback import Recording
 from ..node.endpoints import publisher, set_stamp
-from ..node.listed_parameters import ListedNode
+from ..node.parameters import ListedNode
 from ..node.time_services import answer
 from ..programs import GivenParameters
 from .commands import Commands

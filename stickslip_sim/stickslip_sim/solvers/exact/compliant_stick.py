@@ -30,7 +30,7 @@ from ...axis.motion import oscillator_of
 from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, bound
-from ...linear.zeros import EPSILON, first_crossing, safe_step
+from ...linear.roots import EPSILON, first_crossing, safe_step
 from .contact_force import (
     ContactForce,
     bracketed_root,

@@ -15,7 +15,7 @@ from ...axis.motion import drive_travel, travel, travel_at
 from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.oscillator import Oscillator, amplitude, impulse, short_integrals
-from ...linear.zeros import EPSILON, halley, halley_settles
+from ...linear.roots import EPSILON, halley, halley_settles
 from .static_guards import STEPS, law
 
 

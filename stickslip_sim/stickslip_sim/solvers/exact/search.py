@@ -24,8 +24,7 @@ from ...axis.motion import oscillator_of, tick_integrals, travel_at
 from ...axis.slip_series import moves_by_series
 from ...axis.state_record import State
 from ...core.hot_path import inlined
-from ...linear.roots import first_passage
-from ...linear.zeros import EPSILON, finite_horizon, first_crossing, half_period
+from ...linear.roots import EPSILON, finite_horizon, first_crossing, first_passage, half_period
 from .compliant_stick import compliant_stick
 from .forced import forced_event
 from .series_events import RENEWAL, series_event

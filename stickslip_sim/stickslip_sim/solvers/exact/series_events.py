@@ -26,7 +26,7 @@ from ...axis.forces import force_rounding, kinetic_at_rest
 from ...axis.layout import Parameters
 from ...axis.state_record import HIGHEST_ORDER, State
 from ...core.hot_path import compiled, inlined
-from ...linear.zeros import EPSILON, ITERATIONS
+from ...linear.roots import EPSILON, ITERATIONS
 from .forced import passed_kind, speed_gap
 
 RENEWAL = -1.0          # in place of an `types.EventKind`: a new segment start, and no event

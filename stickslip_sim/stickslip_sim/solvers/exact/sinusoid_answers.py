@@ -16,7 +16,8 @@ from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...linear.moments import moments
 from ...linear.oscillator import Oscillator
-from ...linear.wave_products import (
+from ...linear.waves import (
+    TURN,
     cycle_within,
     mirrored,
     over,
@@ -27,7 +28,6 @@ from ...linear.wave_products import (
     wave_moment,
     wave_products,
 )
-from ...linear.waves import TURN
 
 _NEAR = 1.0         # up to which its phase is taken from that of the oscillator
 _CLOSE = 0.07       # (|γ| + |w − ν|) t up to which a sinusoid is interpolated

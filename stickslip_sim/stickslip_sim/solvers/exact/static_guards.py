@@ -17,7 +17,7 @@ from ...axis.layout import Parameters
 from ...axis.state_record import State
 from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT, EXPONENTIAL, KATO, LOGARITHMIC, StaticGrowth, static_growth
-from ...linear.zeros import EPSILON, first_crossing, halley, householder, householder_settles, safe_step
+from ...linear.roots import EPSILON, first_crossing, halley, householder, householder_settles, safe_step
 
 TICK = 0.1         # s; a search no longer than that begins with a bound, which mostly ends it
 STEPS = 100_000
