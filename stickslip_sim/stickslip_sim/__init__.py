@@ -62,7 +62,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.scene': ('Scene', 'scene_names'),
         '.sensitivity.sensitivities': ('Sensitivities', 'sensitivities'),
         '.simulation.simulator': ('Simulator',),
-        '.study.in_memory': ('critical', 'sweep', 'uncertainty'),
+        '.study.sweep': ('critical', 'sweep', 'uncertainty'),
     }
     _HOMES = {name: module for module, names in _MODULES.items() for name in names}
 

@@ -192,7 +192,7 @@ def test_a_node_ends_whose_middleware_does_not(prepare: Callable[[], None], repo
 PLACES = {    # a method of stickslip_sim, and the program that calls it in this thread
     'step loop': ('simulation.rig', 'Rig', 'make_step', 'sim_node'),
     'player': ('ros.replay.states', 'States', 'acts', 'replay_node'),
-    'executor': ('ros.node.periodic_report', 'PeriodicReport', 'report', 'sim_node'),
+    'executor': ('ros.node.reports', 'PeriodicReport', 'report', 'sim_node'),
 }
 
 

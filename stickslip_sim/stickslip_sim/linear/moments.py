@@ -7,7 +7,7 @@ cases, so that none divides by what vanishes:
 
 * a short span takes the power series of the equation at the five nodes of Gauss and Legendre's rule;
 * a swing is a polynomial and a wave Re Z e^(λt), whose products have closed integrals;
-* two real eigenvalues far apart are `far_apart`'s, and near critical damping the square is `far_apart`'s.
+* two real eigenvalues far apart, and the square near critical damping, have integrals of their own (below).
 """
 
 import math

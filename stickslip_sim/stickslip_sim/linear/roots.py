@@ -4,7 +4,7 @@
 
 Three arguments cover every guard of a linear mode; none of them scans:
 
-1. *A zero of a free motion* (`zeros.first_zero`) has a closed form: one atan2, or one logarithm when over-damped.
+1. *A zero of a free motion* (`first_zero`) has a closed form: one atan2, or one logarithm when over-damped.
 2. *Monotone pieces* (`first_passage`): between the closed-form zeros of its derivative a function is monotone, so its
    sign at the two ends decides whether it has a root between them, and a bracketed Newton step finds it.  The zeros of
    a free motion are at least half a period apart (an over-damped one has one at most): a derivative that is positive
@@ -17,7 +17,7 @@ Three arguments cover every guard of a linear mode; none of them scans:
 What the arguments assume of floating point (tests/linear/test_linear.py holds each to it):
 
 a. *Overflow*: nothing is evaluated where a growing mode has grown by more than e⁶⁰⁰; it has left every bounded piece
-   before.  There a value is a number, a product of two is not, so that steps are taken in ratios (`zeros`).
+   before.  There a value is a number, a product of two is not, so that steps are taken in ratios.
 b. *Underflow*: the rate of a mode that has died out may be 0 or have lost its digits.  A step from there is infinite
    or beyond the bracket, and the bracket is halved; a value that is not 0 never gives a step of 0.
 c. *When a root is accepted*: inside a bracket whose ends have been evaluated and differ in sign, or where argument 2
@@ -33,7 +33,7 @@ from typing import NamedTuple
 from ..core.hot_path import compiled, inlined
 from .oscillator import Oscillator, integrals, short_integrals
 
-# Zeros of a free motion, in closed form, and how far a growing one may be followed (`roots`, argument 1 and a).
+# Zeros of a free motion, in closed form, and how far a growing one may be followed (argument 1 and a).
 
 _OVERFLOW = 600.0   # largest exponent of a growing mode; by then it has left every bounded segment
 
@@ -76,7 +76,7 @@ def finite_horizon(osc: Oscillator, t: float) -> float:
     return min(t, _OVERFLOW / growth) if growth > 0.0 else t
 
 
-# First roots of polynomials of degree two: exact ones, and bounds that make a step safe (`roots`, argument 3).
+# First roots of polynomials of degree two: exact ones, and bounds that make a step safe (argument 3).
 
 @compiled
 def first_crossing(value: float, slope: float, second_rate: float) -> float:
@@ -154,7 +154,7 @@ def halley_settles(size: float, sharpness: float, root: float) -> bool:
     return size * sharpness * sharpness <= 0.1 * EPSILON * root
 
 
-# The root of a rise that is monotone, and the rise under a ramp of the drive (`roots`, argument 2).
+# The root of a rise that is monotone, and the rise under a ramp of the drive (argument 2).
 
 @compiled
 def passage_under_ramp(osc: Oscillator, rate: float, jerk: float, snap: float, gap: float, horizon: float

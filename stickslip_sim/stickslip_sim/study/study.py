@@ -31,7 +31,7 @@ _IN_A_CHUNK, _ALONE_IN_A_CHUNK = 2000, 20   # points: a fraction of a second
 class Study:
     """The scene of the effective `values`, varied as `sample` says.
 
-    Each point runs for `duration` s, or with None until its motion settles (`settling`).  Raises InputError unless
+    Each point runs for `duration` s, or with None until its motion settles (`points`).  Raises InputError unless
     every combination of the ends of the variations is a scene.
     """
 

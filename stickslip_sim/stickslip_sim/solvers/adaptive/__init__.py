@@ -14,7 +14,7 @@ An event is where a guard falls through zero within a step, found to rounding on
 (`first_fall`), and goes on below it by more than the tolerances make of its value: what stays within them is no event.
 Steps are at most an eighth of the period of the fastest sinusoid.  A mode is integrated from its segment start on,
 as far as asked for, and looked up on the interpolants: events and states are the same to the last bit for all samples
-and all ways to split a run (`mode_integration`).
+and all ways to split a run (`engine`).
 
 When to use it: to check the exact engine by other means, and for a smooth law of kinetic friction itself in place of
 its table (`kinetic`).  The cost is milliseconds for every event and every call: thousands of times that of the exact

@@ -3,7 +3,7 @@
 """What the guards watch under sines: the force on a still slider, the contact force, or the acceleration of a slip.
 
 Each is a polynomial, a free motion and the answer to the sinusoids: a *signal* f with f(t), f′(t), and a bound on |f″|
-over the next stretch, its reach (`signal_readings.Reading`).
+over the next stretch, its reach (`Reading`).
 
 * The force on a still or coasting slider has no free motion: |f″| is at most the sum of its amplitudes times w².
 * Otherwise z = f″ obeys the oscillator's equation with the sinusoids as forcing.  A sinusoid off resonance leaves its

@@ -7,7 +7,7 @@ itself: they know nothing of where the engine says that the motion arrives (see 
 the inputs are v + v′t and F + F′t, and every work is made from the integrals of x and of x²; x is the variable that a
 motion settles in, the slider's velocity in stick, and in slip what the drive is ahead of it, v − ẋ.  Where that is
 nearly all of v, little is left for the other one, and few of its digits; then the other one is x: of a slow slider that
-slips under a fast drive, and of a contact so weak that it holds little.  `sinusoid_works` adds the sines.
+slips under a fast drive, and of a contact so weak that it holds little.  The sines add theirs (below).
 """
 
 import math
