@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from .scene import Scene, scene_names
     from .sensitivity.sensitivities import Sensitivities, sensitivities
     from .simulation.simulator import Simulator
-    from .study.sweep import critical, sweep, uncertainty
+    from .study.in_memory import critical, sweep, uncertainty
 
 __all__ = [
     'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError', 'RecordingWarning', 'Run',
@@ -62,7 +62,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.scene': ('Scene', 'scene_names'),
         '.sensitivity.sensitivities': ('Sensitivities', 'sensitivities'),
         '.simulation.simulator': ('Simulator',),
-        '.study.sweep': ('critical', 'sweep', 'uncertainty'),
+        '.study.in_memory': ('critical', 'sweep', 'uncertainty'),
     }
     _HOMES = {name: module for module, names in _MODULES.items() for name in names}
 

@@ -17,9 +17,9 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.compare.characteristics import characteristics_beside, characteristics_of
-from stickslip_sim.compare.cycle_figures import RING_DOWN, closed_form, identified
 from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.compare.look import drawn_motion, in_order, look_at
+from stickslip_sim.compare.ring_down import RING_DOWN, closed_form, identified
 from stickslip_sim.compare.statements import StatementOutcome, findings_on, observed
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene

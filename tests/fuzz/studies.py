@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
 from stickslip_sim.cli.main import run
-from stickslip_sim.study.table import PARTIAL, POINTS_TABLE, SIDECAR
+from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, SIDECAR
 from tests.support import made_up_texts
 
 _SCENE = 'paper_fig7'

@@ -18,7 +18,8 @@ from hypothesis.strategies import SearchStrategy
 
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.observed_run import gaps_in, observed_motion, timing_of
-from stickslip_sim.check.verification import doubts_about, verify
+from stickslip_sim.check.origin import doubts_about
+from stickslip_sim.check.verification import verify
 from stickslip_sim.cli.csv_tables import csv_lines
 from stickslip_sim.core.errors import InputError, RecordingWarning, SolverError
 from stickslip_sim.inputs import load_scene

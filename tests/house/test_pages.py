@@ -31,7 +31,7 @@ from stickslip_sim.recording import reader
 from stickslip_sim.runs import samples, simulated
 from stickslip_sim.scene import parameter, ros_yaml, schema
 from stickslip_sim.simulation.faults import MAX_FAULTS
-from stickslip_sim.study import table
+from stickslip_sim.study import folder
 from tests.support.floors import floors
 from tests.support.tool import Capture, answered
 
@@ -111,7 +111,7 @@ class TestLimits:
         ('schemas, attachments', (bag_files.MOST_BESIDE >> 20,)),
         ('a definition', (schemas.LONGEST_DEFINITION, schemas.MOST_ELEMENTS)),
         ('a topic of a bag', (reader.MOST_TOPIC_BYTES >> 20,)),
-        ('the description of a sweep', (table.LONGEST_SIDECAR >> 20,)),
+        ('the description of a sweep', (folder.LONGEST_SIDECAR >> 20,)),
         ('steps that a recording may lack', (remake.MOST_MISSING,)),
         ('samples and events', (simulated.MAX_SAMPLES, samples.MOST_IN_MEMORY, simulated.MAX_EVENTS)),
     ])

@@ -17,7 +17,7 @@ from stickslip_sim.reference import simulate
 from stickslip_sim.scene import Scene, changed
 from stickslip_sim.sensitivity.moved_number import STENCILS, Stencil
 from stickslip_sim.sensitivity.sensitivities import Sensitivities, sensitivities
-from stickslip_sim.study.sweep import sweep
+from stickslip_sim.study.in_memory import sweep
 
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.2, 'axis.drive_damping': 0.0,
             'friction.kinetic.velocities': [0.0], 'friction.kinetic.coefficients': [0.12]}

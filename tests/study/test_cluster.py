@@ -18,8 +18,8 @@ from pathlib import Path
 import pytest
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE
 from stickslip_sim.study.study import versions_of_a_study
-from stickslip_sim.study.table import PARTIAL, POINTS_TABLE
 from tests.support.tool import Capture, restore_interrupt
 
 pytestmark = pytest.mark.slow

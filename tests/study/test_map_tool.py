@@ -19,8 +19,9 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.study import EvenGrid, Study, variation
 from stickslip_sim.study.diagrams import bifurcation, borders, ending_at
+from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.study import study_of
-from stickslip_sim.study.table import PARTIAL, POINTS_TABLE, SIDECAR, Folder, read_columns
+from stickslip_sim.study.table import read_columns
 from tests.support.tool import Capture, refused
 
 SMALL = ['paper_fig7', '--over', 'drive.velocity=1e-3:0.06:6:log', '--over', 'axis.drive_stiffness=1e5:1e6:4:log']

@@ -20,8 +20,8 @@ from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene, changed
 from stickslip_sim.study import MOTIONS, EvenGrid, Figures, Motion, Sobol, Study, variation
 from stickslip_sim.study.critical import critical_feed, feed_of_theory
+from stickslip_sim.study.in_memory import critical, sweep, uncertainty
 from stickslip_sim.study.points import runs_alone
-from stickslip_sim.study.sweep import critical, sweep, uncertainty
 
 CONSTANT = {'friction.static.law': 'constant', 'friction.static.initial': 0.24,
             'friction.kinetic.velocities': [0.0], 'friction.kinetic.coefficients': [0.12]}

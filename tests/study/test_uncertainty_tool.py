@@ -12,8 +12,8 @@ from typing import Any
 import pytest
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.study.folder import LONGEST_SIDECAR, PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.study import study_of
-from stickslip_sim.study.table import LONGEST_SIDECAR, PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from tests.support.tool import Capture, answered, refused
 
 KNOWN = """parameters:

@@ -24,7 +24,7 @@ from ..recording.run import CHECKPOINT_FILE
 from ..runs import simulate
 from ..scene import Scene, scene_from_values
 from ..simulation import Fault, Rig, RigEventKind, StepResult
-from .verification import Offline, begins_in_mid_run, checkpoint_of, offline_of
+from .origin import Offline, begins_in_mid_run, checkpoint_of, offline_of
 
 # The messages of a recording, step by step.
 

@@ -21,7 +21,8 @@ from ..scene.values import scene_text
 from .limits import LimitOutcome
 from .measures import TIMING_LIMIT
 from .observed_run import commands_of, gaps_in, observed_motion, timing_of
-from .verification import Verdict, made_with
+from .origin import made_with
+from .verification import Verdict
 
 _DRAWN = 'position', 'velocity', 'friction_force'   # of what if
 

@@ -16,8 +16,8 @@ from ..runs.samples import GATHERED, MOST_HELD, HeldSamples, RemadeSamples, Samp
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene, changed
 from ..scene.schema import BY_NAME
+from .origin import begins_in_mid_run, offline_of
 from .remake import Maker, maker_of, steps_of
-from .verification import begins_in_mid_run, offline_of
 
 
 def other_scene(run: RecordedRun, changes: Mapping[str, object]) -> Scene:

@@ -192,8 +192,9 @@ def study_options(command: ClickCommand) -> ClickCommand:
 
 def _members(workers: str | None, scheduler: str | None) -> Members:
     """Return the workers on a study: none but this process, processes, or a cluster; raises InputError, UsageError."""
+    from ..study.cluster import cluster
+    from ..study.resources import process_count
     from ..study.sweep import processes
-    from ..study.workers import cluster, process_count
 
     if scheduler is not None:
         if workers is not None:

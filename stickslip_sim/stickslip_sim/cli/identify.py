@@ -35,7 +35,7 @@ def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str
     and report.json.  Exit with 3 when the model does not fit the run; the report shows where.  Ctrl-C keeps the fits
     that are done.
     """
-    from ..study.workers import process_count
+    from ..study.resources import process_count
 
     if not resume:
         check_new_folder('--out', out)

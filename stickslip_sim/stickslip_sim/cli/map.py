@@ -27,9 +27,10 @@ def map_(folder: str, pictures: tuple[str, ...], shown: str, picks: tuple[str, .
     from ..compare.pictures import picked
     from ..core.errors import InputError
     from ..study.diagrams import check_drawable, draw_bifurcation, draw_map
+    from ..study.folder import Folder
     from ..study.report import failed_report
     from ..study.study import study_of
-    from ..study.table import Folder, read_columns
+    from ..study.table import read_columns
     from .progress import progress_bar
 
     swept = Folder(folder)

@@ -26,9 +26,9 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
     Ctrl-C keeps the finished points.  `stickslip map FOLDER` draws it.
     """
     from ..study import EvenGrid, Sobol, Study, variation
+    from ..study.folder import Folder
     from ..study.report import sweep_report
     from ..study.sweep import carry_out
-    from ..study.table import Folder
     from .progress import progress_bar
 
     loaded = changes.load(scene)

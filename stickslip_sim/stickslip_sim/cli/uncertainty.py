@@ -38,8 +38,8 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
     from ..scene.load import named
     from ..study import Saltelli, Study, report
     from ..study import critical as values_of
+    from ..study.folder import Folder
     from ..study.sweep import carry_out
-    from ..study.table import Folder
     from ..study.uncertainty import load_uncertain, uncertainty_of
     from .progress import progress_bar
 

@@ -23,8 +23,8 @@ def verify(run: str, changes: SceneChanges, out: str | None) -> None:
     if out is not None and not changes.overrides:
         raise click.UsageError('--out is of no use alone: give --set A.B=VALUE too.')
     from ..check import verification
+    from ..check.origin import doubts_about
     from ..check.report import beside_table, verdict_report, write_what_if
-    from ..check.verification import doubts_about
     from ..check.what_if import other_run, other_scene
     from ..core.errors import VerdictError
     from ..report.model import NOTE, Sentence

@@ -29,7 +29,7 @@ from ..runs import SimulatedRun, simulate_events
 from ..runs.samples import HeldSamples
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene, changed
-from .cycle_figures import closed_form
+from .ring_down import closed_form
 
 MAX_DRAWN_EVENTS = 50_000
 _IN_SPAN = 8, 200          # samples between two events, at least and at most

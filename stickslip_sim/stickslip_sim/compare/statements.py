@@ -22,8 +22,8 @@ from ..figures.slips import breaks_away, complete_slips, complete_sticks
 from ..runs import Run
 from ..runs.run import kept
 from ..simulation.simulator import Simulator
-from .cycle_figures import RING_DOWN, SLIP_PEAKS, RingDown, closed_form, latest_ringing, slip_peaks
 from .look import APPLIED, RunLook, RunPart, SteadyInputs, Watch, look_at, steady_inputs, watched, within
+from .ring_down import RING_DOWN, SLIP_PEAKS, RingDown, closed_form, latest_ringing, slip_peaks
 
 # What the paper says, as something that holds on a run, or not.
 

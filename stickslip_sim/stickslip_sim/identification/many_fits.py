@@ -25,8 +25,8 @@ from ..core.errors import InputError
 from ..report.values import versions
 from ..runs import Run
 from ..scene import Scene
+from ..study.folder import KEPT
 from ..study.sweep import processes
-from ..study.table import KEPT
 from .fit_problem import FitProblem
 from .least_squares import Solution
 from .stages import Ended, fit_from

@@ -5,24 +5,18 @@
 Nothing here runs a point.
 """
 
-import fcntl
-import json
 import math
-import os
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 import numpy as np
 
 from ..core.arrays import Numbers, has_parquet
-from ..core.errors import InputError, paths_beside, suggestion
-from ..core.paths import made_folder
+from ..core.errors import InputError
 from ..figures.point_figures import FIGURES, MOTIONS, Figures, Motion
-from .study import FORM, Study, description
-from .workers import check_resources
+from .study import Study
 
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
 _ROUNDING = 1e-13         # of a value: another version of numpy rounds steps of one ratio otherwise
@@ -148,129 +142,3 @@ def write_parquet(columns: Mapping[str, Numbers | Sequence[str]], path: Path) ->
         pass
     finally:
         temporary.unlink(missing_ok=True)
-
-
-# A sweep on disk: `study.json` describes it, and its table grows by whole chunks of lines.
-#
-# Until all points are there the table is `points.partial.csv`; then it becomes `points.csv`.
-
-LONGEST_SIDECAR = 1 << 24   # bytes of a description; nearly all of it is the scene
-SIDECAR, POINTS_TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
-KEPT = 'what is done is kept, --resume goes on'
-
-
-class Folder:
-    """The folder of a sweep; raises InputError, with a path in it, where the disk refuses."""
-
-    def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
-
-    @property
-    def table(self) -> Path:
-        """Where the table of all points stands when it is complete."""
-        return self.path / POINTS_TABLE
-
-    @property
-    def is_complete(self) -> bool:
-        """Whether all points are there."""
-        return self.table.exists()
-
-    def begin(self, study: Study, command: str) -> None:
-        """Make the folder with the description of the study and an empty table: whole, or not at all."""
-        if os.path.lexists(self.path):
-            raise InputError('--out', str(self.path), 'a folder that does not exist',
-                             'choose another name, or add --resume to go on with it')
-        temporary = self.path.absolute().with_name(f'.{os.getpid()}.{self.path.name}')
-        with _refusing(self.path, 'nothing is left behind'), made_folder(temporary):
-            check_resources(study, temporary)
-            (temporary / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
-                                             encoding='utf-8')
-            (temporary / PARTIAL).write_bytes(title_line(study))
-            temporary.rename(self.path)
-
-    @contextmanager
-    def taken(self) -> Iterator[None]:
-        """Keep other processes away from the folder; raises InputError where one works on it.
-
-        The lock ends with the process that has it, however that ends.
-        """
-        with ExitStack() as held:
-            try:
-                file = held.enter_context((self.path / SIDECAR).open('r+b'))
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                raise InputError('--out', str(self.path), 'a folder that no other process works on',
-                                 'wait for that one, or end it and add --resume') from None
-            except OSError as error:
-                raise _refusal(self.path, error) from None
-            yield
-
-    def described(self) -> dict[str, Any]:
-        """Return the description in the folder; raises InputError when it is not of a sweep."""
-        path = self.path / SIDECAR
-        try:
-            if path.is_file() and path.stat().st_size <= LONGEST_SIDECAR:
-                found = json.loads(path.read_text(encoding='utf-8'))
-                if found['form'] == FORM:
-                    return dict(found)
-        except (OSError, ValueError, KeyError, TypeError, RecursionError):
-            pass
-        beside = paths_beside(self.path, (), folders=True)
-        raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one'
-                         if self.path.exists() else suggestion(str(self.path), beside, 'no such folder: sweep into it'))
-
-    def check_same(self, study: Study) -> None:
-        """Raise InputError unless the folder is of this study, by the same versions."""
-        found = self.described()
-        for name, value in description(study).items():
-            if name != 'command' and found.get(name) != value:
-                raise InputError('--resume', str(self.path), f'the folder of this very study; its {name} is another',
-                                 f'give the command that stands in its {SIDECAR}, or another folder')
-
-    def whole_chunks(self, study: Study) -> list[Numbers]:
-        """Return the rows of each whole chunk of points that is there; the remains of a crash are cut off."""
-        path, titles = self.path / PARTIAL, title_line(study)
-        with _refusing(path), path.open('r+b') as file:
-            if not may_be_table(path, study) or file.readline(len(titles)) != titles:
-                raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')
-            chunks, end = [], len(titles)
-            for first, last in study.stretches():
-                found = next_lines(file, study, first, last)
-                try:
-                    chunks.append(read_rows(found, study, first, last))
-                except ValueError:
-                    break
-                end += sum(map(len, found))
-            file.truncate(end)
-        return chunks
-
-    def append(self, lines: bytes) -> None:
-        """Add lines to the table: all of them, or none when the disk refuses."""
-        with _refusing(self.path / PARTIAL), (self.path / PARTIAL).open('ab', buffering=0) as file:
-            before = file.seek(0, os.SEEK_END)
-            try:
-                written = 0
-                while written < len(lines):   # once; a full disk takes a part and then says why
-                    written += file.write(lines[written:])
-            except BaseException:
-                file.truncate(before)
-                raise
-
-    def finish(self, columns: TableColumns) -> None:
-        """Give the table its name; where pandas is installed, write its `columns` as Parquet too."""
-        with _refusing(self.path):
-            write_parquet(columns | {'motion': words(columns['motion'])}, self.path / PARQUET)
-            (self.path / PARTIAL).replace(self.table)
-
-
-@contextmanager
-def _refusing(path: Path, comfort: str = KEPT) -> Iterator[None]:
-    """Turn an error of the disk into an InputError."""
-    try:
-        yield
-    except OSError as error:
-        raise _refusal(path, error, comfort) from None
-
-
-def _refusal(path: Path, error: OSError, comfort: str = KEPT) -> InputError:
-    return InputError('--out', str(path), 'a place that can be written', f'{error.strerror or error}; {comfort}')

@@ -16,7 +16,7 @@ from ...core.time_grid import Grid
 from ...realtime.commands import CommandSlot, Watchdog
 from ...realtime.pacing import step_clock
 from ...realtime.step_loop import Sink, StepLoop
-from ...realtime.timing import verdict
+from ...realtime.verdict import verdict
 from ...recording import RECORDED, RunFacts, messages
 from ...runs.simulated import CostMeter, warm_up
 from ...scene.load import NODE

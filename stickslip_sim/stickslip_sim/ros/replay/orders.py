@@ -19,7 +19,7 @@ from ...recording.playback import Recording
 from ...scene.schema import BY_NAME
 from ...simulation import RigEventKind
 from ..node.endpoints import deserialized, publisher
-from .commands import LiveAxis
+from .live_axis import LiveAxis
 from .player import Act, nothing, wait_until
 from .span import PlayedSpan
 
