@@ -319,7 +319,7 @@ def run_batch(axis: Axis, duration: float, *, drive_velocity: ArrayLike, externa
               initial: InitialState | None = None, threads: int | None = None, **changes: ArrayLike) -> BatchFigures:
     """Run an axis for `duration` s under every `drive_velocity` (m/s) and `external_force` (N), with `changes` to it.
 
-    `changes` are arrays (or numbers) by the names in `batch_columns.COLUMNS`; all arrays have one length n, or 1.
+    `changes` are arrays (or numbers) by the names in `batch.COLUMNS`; all arrays have one length n, or 1.
     Those of velocities and coefficients have a row for each axis, or one for all.  `threads` is the number of cores to
     use (default: all).  Raises InputError on unknown names, lengths that do not match, and values without a meaning;
     nothing runs then.
