@@ -162,12 +162,11 @@ def test_two_of_one_name(folder: Path, double: Double, capsys: Capture) -> None:
         double.await_client()
         return tool('call', 'step', '--node', AXIS, **NO_PROFILES).stderr
 
-    def refused_for_two(call: Callable[[], str]) -> str:
-        line = call()
-        return line if 'two nodes' in line else ''
+    def of_two(call: Callable[[], str]) -> str:
+        return line if 'two nodes' in (line := call()) else ''
 
     for call in (in_this_process, afresh):
-        assert wait_for(partial(refused_for_two, call), 'both').startswith(
+        assert wait_for(partial(of_two, call), 'both').startswith(
             f"stickslip: --node = '{AXIS}' is refused: must be the name of one node; two nodes named {AXIS} answer")
     double.is_deaf = True    # as one that was killed
     assert 'refused while time runs by itself' in refusal(capsys, 'step')

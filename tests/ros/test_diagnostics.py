@@ -23,7 +23,7 @@ from stickslip_sim.ros.health_node import health_of
 from stickslip_sim.ros.node.clock import ClockIn
 from stickslip_sim.ros.node.graph_monitor import PublisherWatch
 from tests.support.forked_programs import ended_at_once, refusal_of, ros_args
-from tests.support.node_processes import executable, recording_into, running, with_small_files
+from tests.support.node_processes import attentive, executable, recording_into, running, with_small_files
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
 from tests.support.ros_nodes import Client, client, live_axis, nanoseconds
 from tests.support.waiting import wait_for
@@ -48,7 +48,7 @@ def no_trouble(axis: Client) -> None:
 
 class TestGraphMonitor:
     def test_controllers_come_and_go(self) -> None:
-        with live_axis(*ON) as (process, axis):
+        with live_axis(*ON, prepare=attentive) as (process, axis):
             axis.stop_commanding()
             with hardware_interface(always(0.003), name='first'):
                 with hardware_interface(always(0.004), name='second'):
@@ -80,7 +80,8 @@ class TestGraphMonitor:
 
     def test_what_a_time_out_has_ended_does_not_stay_in_force(self) -> None:
         """Nor does a force trouble anybody: no time-out ends it, and it is meant to act until the next."""
-        with live_axis(*SLOW, 'command.timeout:=0.05', 'command.on_timeout:=ramp_to_zero') as (process, axis):
+        wanted = ('command.timeout:=0.05', 'command.on_timeout:=ramp_to_zero')
+        with live_axis(*SLOW, *wanted, prepare=attentive) as (process, axis):
             axis.send_velocity(0.004)
             axis.send_force(300.0)
             axis.status('command', lambda values: values['timed out'] == '1' and values['force received'] == '1')
@@ -111,7 +112,7 @@ class TestGraphMonitor:
 
     def test_one_that_never_sends_is_reported(self) -> None:
         """They compare positions, and none is commanded: at position 0, or for ever, there is no difference."""
-        with live_axis(*ON, 'drive.velocity:=0.0') as (_, axis):
+        with live_axis(*ON, 'drive.velocity:=0.0', prepare=attentive) as (_, axis):
             for rule in (Rule.ALL_POSITIONS, Rule.COMMANDED_POSITIONS):
                 with hardware_interface(always(0.003), near_is_silent(), rule) as hardware:
                     status = trouble(axis, 'sends nothing')
@@ -178,6 +179,7 @@ class TestClock:
         with pytest.raises(InputError, match=r'use_sim_time = True is refused: must be with a /clock within 10 s'):
             clock.has_come()
 
+
 class TestHealth:
     def test_one_that_runs_is_well_one_of_another_namespace_is_not_meant(self) -> None:
         with live_axis(*SLOW, namespace='/press'):
@@ -194,9 +196,9 @@ class TestHealth:
             with client() as axis:
                 axis.connect()
             process.send(signal.SIGSTOP)
-            code, errors = ended_at_once('health', 'patience:=3.0')
+            code, errors = ended_at_once('health', 'patience:=1.5')
         assert code == 1
-        assert errors.startswith('health: /feed_axis said nothing on /diagnostics within 3 s')
+        assert errors.startswith('health: /feed_axis said nothing on /diagnostics within 1.5 s')
 
     def test_one_whose_recording_failed_is_not_well(self, tmp_path: Path) -> None:
         with running(*recording_into(tmp_path / 'run'), prepare=with_small_files):

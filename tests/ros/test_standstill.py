@@ -23,8 +23,8 @@ from tests.support.forked_programs import ros_args
 from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running
 from tests.support.recorded_runs import FACTS, samples
 from tests.support.ros_nodes import client, live_axis
-from tests.support.tool import restore_interrupt, tool
-from tests.support.waiting import wait_for
+from tests.support.tool import restore_interrupt
+from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = pytest.mark.ros
 
@@ -49,6 +49,16 @@ def impatient() -> None:
     """For `prepare`."""
     restore_interrupt()
     standstill.GRACE = 3.0
+
+
+IMPATIENT_CALL = """
+import sys
+from stickslip_sim.cli.main import run
+from stickslip_sim.ros import standstill
+
+standstill.GRACE = 3.0
+sys.exit(run(['call', 'pause']))
+"""
 
 
 def with_a_middleware_that_does_not_end() -> None:
@@ -124,7 +134,8 @@ class TestWithSharedMemory:
     def test_so_does_a_call(self, half_made: Callable[[Path], None]) -> None:
         for port in ports().values():
             half_made(port)
-        done = tool('call', 'pause')
+        done = subprocess.run([sys.executable, '-c', IMPATIENT_CALL], capture_output=True, text=True, timeout=60,
+                              check=False)
         assert done.returncode == 2
         assert done.stderr.startswith('stickslip call: ROS does not come up: ')
 
@@ -167,7 +178,7 @@ def test_without_shared_memory_a_half_made_port_is_nothing(half_made: Callable[[
 def test_time_in_which_a_node_is_stopped_does_not_count() -> None:
     with live_axis(prepare=impatient) as (process, axis):
         process.send(signal.SIGSTOP)
-        time.sleep(4.5)
+        time.sleep(3.5)
         process.send(signal.SIGCONT)
         axis.next('slider_state')
         time.sleep(3.5)    # in which it would have ended
@@ -249,13 +260,15 @@ sys.exit(sim_node(sys.argv[1:]))
 
 def test_a_run_that_contradicts_itself_stands_still(tmp_path: Path) -> None:
     """The check of runs finds it at the next event; the node says so and waits, and its bag is whole."""
-    with subprocess.Popen([sys.executable, '-c', CORRUPTED, *ros_args(*recording_into(tmp_path / 'run'))],
-                          stderr=subprocess.PIPE, text=True) as node:
-        assert node.stderr is not None
-        line = next(line for line in node.stderr if 'stands still' in line)
-        node.send_signal(signal.SIGINT)
-        node.stderr.read()
-        assert node.wait(60) == 0
+    words, errors = ros_args(*recording_into(tmp_path / 'run')), tmp_path / 'errors'
+    with errors.open('w') as out, subprocess.Popen([sys.executable, '-c', CORRUPTED, *words], stderr=out) as node:
+        try:
+            line = wait_for(lambda: [line for line in errors.read_text().splitlines() if 'stands still' in line],
+                            'its end')[0]
+            node.send_signal(signal.SIGINT)
+            assert node.wait(DEADLINE) == 0
+        finally:
+            node.kill()
     assert 'the run contradicts its own motion or balance of energy at t = ' in line
     bag = open_bag(tmp_path / 'run')
     assert bag.is_complete

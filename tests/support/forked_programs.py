@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs of `stickslip_sim.ros`, forked from a process that has imported what they need: a quarter of the cost.
 
-What is left out is the start of the interpreter and of the installed script: see `node_processes`.
+What is left out is the start of the interpreter and of the installed script, unless that is asked for.
 """
 
 import ctypes
@@ -45,6 +45,7 @@ class _Start(NamedTuple):
     """All that a program starts with."""
 
     program: str
+    path: str
     arguments: tuple[str, ...]
     folder: Path
     environment: dict[str, str]
@@ -52,7 +53,7 @@ class _Start(NamedTuple):
     prepare: Callable[[], None]
 
     def run(self) -> None:
-        """Be the program, until its end."""
+        """Be the program, or the file at the path, until its end."""
         os.setsid()
         os.chdir(self.folder)
         os.environ.clear()
@@ -60,6 +61,8 @@ class _Start(NamedTuple):
         os.dup2(os.open(self.errors, os.O_WRONLY | os.O_APPEND), 2)
         sys.stderr = os.fdopen(2, 'w', buffering=1, encoding='utf-8', closefd=False)
         self.prepare()
+        if self.path:
+            os.execve(self.path, [self.path, *self.arguments], self.environment)
         from stickslip_sim.ros import executables
 
         code = getattr(executables, self.program)([*self.arguments])
@@ -67,12 +70,16 @@ class _Start(NamedTuple):
 
 
 class ForkedProgram:
-    """A program in a session of its own, with what of `subprocess.Popen` is asked of one; standard error is kept."""
+    """A program in a session of its own, with what of `subprocess.Popen` is asked of one; standard error is kept.
+
+    In a file: into a pipe that nobody empties a program that lives long writes 64 kB, and then stands still.  With a
+    `path` it becomes the program in that file, as it is installed.
+    """
 
     def __init__(self, program: str, *arguments: str, folder: Path | None = None,
-                 prepare: Callable[[], None] = restore_interrupt) -> None:
+                 prepare: Callable[[], None] = restore_interrupt, path: str = '') -> None:
         self._errors = TemporaryFile('w+', encoding='utf-8')    # noqa: SIM115  # closed when it was read
-        start = _Start(program, arguments, folder or Path.cwd(), dict(os.environ),
+        start = _Start(program, path, arguments, folder or Path.cwd(), dict(os.environ),
                        f'/proc/{os.getpid()}/fd/{self._errors.fileno()}', prepare)
         _start_server()
         self._process = _FORKS.Process(target=start.run, daemon=True)

@@ -38,9 +38,17 @@ def recording_into(folder: Path) -> list[str]:
     return ['record.enabled:=true', f'record.folder:={folder}']
 
 
-def with_small_files() -> None:
-    """Let a process write no file of more than 200 kB: for `prepare`."""
+def attentive() -> None:
+    """Let a node that is forked look around and report five times a second, not once: for `prepare`."""
+    from stickslip_sim.ros.node import reports
+
     restore_interrupt()
+    reports.PERIOD = 0.2
+
+
+def with_small_files() -> None:
+    """Let an attentive node write no file of more than 200 kB: for `prepare`."""
+    attentive()
     resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
 
 
@@ -53,15 +61,10 @@ class NodeProcess:
 
     def __init__(self, *words: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
                  program: str = 'sim_node', afresh: bool = False) -> None:
-        self._process: ForkedProgram | subprocess.Popen[str]
         self.code: int | None = None
         self.errors = ''
-        if afresh:
-            self._process = subprocess.Popen(
-                [executable(program), *ros_args(*words)], cwd=folder, stderr=subprocess.PIPE, text=True,
-                start_new_session=True, preexec_fn=prepare)
-        else:
-            self._process = ForkedProgram(program, *ros_args(*words), folder=folder, prepare=prepare)
+        self._process = ForkedProgram(program, *ros_args(*words), folder=folder, prepare=prepare,
+                                      path=executable(program) if afresh else '')
         self.pid = self._process.pid
         self.waits = CoreWaits(self.pid)
 

@@ -222,15 +222,22 @@ class Client:
     def values(self, *names: str) -> Any:
         return self.call(GetParameters, 'get_parameters', names=list(names)).values
 
-    def status(self, name: str, is_it: Callable[[dict[str, str]], bool] = lambda _: True) -> Any:
-        """Return the next status of /diagnostics by that name and its values that fulfil a condition."""
+    def status(self, name: str, is_it: Callable[[dict[str, str]], bool] = lambda _: True,
+               level: bytes | None = None) -> Any:
+        """Return the next status of /diagnostics by that name, of a level, and its values that fulfil a condition.
+
+        The values count what comes while a report is made; its level may have it in the next one only.
+        """
         def find(message: Any) -> Any:
             return next(status for status in message.status if status.name.endswith(f'/feed_axis: {name}'))
 
         def pairs(status: Any) -> dict[str, str]:
             return {pair.key: pair.value for pair in status.values}
 
-        status = find(self.next('/diagnostics', lambda message: is_it(pairs(find(message)))))
+        def is_meant(status: Any) -> bool:
+            return level in (None, status.level) and is_it(pairs(status))
+
+        status = find(self.next('/diagnostics', lambda message: is_meant(find(message))))
         return status, pairs(status)
 
 

@@ -20,10 +20,10 @@ from stickslip_msgs.srv import Step
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag
 from stickslip_sim.simulation import RigEventKind
-from tests.support.node_processes import assert_clean, recording_into
+from tests.support.node_processes import assert_clean, attentive, recording_into
 from tests.support.rigs import assert_same_states, made_again, rig_events_in
 from tests.support.ros_nodes import Client, live_axis
-from tests.support.waiting import wait_for
+from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -168,13 +168,13 @@ class TestRefusals:
 
     def test_each_kind_is_reported_with_its_own_reason_once_until_a_reset(self, tmp_path: Path) -> None:
         """A velocity that is refused now is not reported with the reason of a force that was refused long ago."""
-        with live_axis('time.rate:=200.0', *recording_into(tmp_path / 'run')) as (process, axis):
+        with live_axis('time.rate:=200.0', *recording_into(tmp_path / 'run'), prepare=attentive) as (process, axis):
             refusals = Refusals(axis)
             axis.send_force(math.nan)
             assert refusals.named(self.FORCE) == ('force', 1)
             axis.send_velocity(5.0)
             assert refusals.named(self.VELOCITY) == ('velocity', 1)
-            _, values = axis.status('command', lambda values: values['velocity refused'] == '1')
+            _, values = axis.status('command', lambda values: values['velocity refused'] == '1', b'\1')
             assert values['force last refusal'] == self.FORCE
             said = [status.message for message in axis.heard['/diagnostics'] for status in message.status
                     if status.name == '/feed_axis: command' and 'refused' in status.message]
@@ -187,8 +187,9 @@ class TestRefusals:
 
     def test_the_drive_says_why_it_takes_none_after_a_time_out(self, tmp_path: Path) -> None:
         """They are good commands, refused by the drive: until the fault is cleared."""
-        wanted = ('command.timeout:=0.5', 'command.on_timeout:=fault', 'command.timeout_deceleration:=1.0')
-        with live_axis('time.rate:=200.0', *wanted, *recording_into(tmp_path / 'run')) as (_, axis):
+        wanted = ('time.rate:=200.0', 'command.timeout:=0.5', 'command.on_timeout:=fault',
+                  'command.timeout_deceleration:=1.0')
+        with live_axis(*wanted, *recording_into(tmp_path / 'run'), prepare=attentive) as (_, axis):
             refusals = Refusals(axis)
             axis.send_velocity(0.004)
             axis.next('slider_state', runs_at(0.004))
@@ -205,7 +206,8 @@ class TestRefusals:
 def test_each_part_of_a_step_is_found(tmp_path: Path) -> None:
     page = tmp_path / 'loop.md'
     page.write_text('# Before\n\n## The budget of a step\n\nold\n')
-    subprocess.run([sys.executable, '-m', 'benchmarks.budget', '--seconds', '1', '--out', str(page)], check=True)
+    subprocess.run([sys.executable, '-m', 'benchmarks.budget', '--seconds', '1', '--out', str(page)], timeout=DEADLINE,
+                   check=True)
     text = page.read_text()
     assert text.startswith('# Before\n\n## The budget of a step\n\n`python3 -m benchmarks.budget')
     assert 'old' not in text

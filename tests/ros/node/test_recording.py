@@ -20,7 +20,7 @@ from stickslip_sim.recording import RecordedRun, open_bag, read_run
 from stickslip_sim.runs import simulate
 from stickslip_sim.runs.run import LOAD_COLUMN
 from stickslip_sim.scene import changed
-from tests.support.node_processes import recording_into, running, with_small_files
+from tests.support.node_processes import attentive, recording_into, running, with_small_files
 from tests.support.ros_nodes import client, live_axis
 from tests.support.waiting import DEADLINE, wait_for
 
@@ -52,7 +52,7 @@ class TestPlace:
         runs = tmp_path / 'runs'
         (runs / 'mine').mkdir(parents=True)
         (runs / 'away').symlink_to(tmp_path, target_is_directory=True)
-        with live_axis(f'record.folder:={runs}/first', folder=tmp_path) as (_, axis):
+        with live_axis(f'record.folder:={runs}/first', folder=tmp_path, prepare=attentive) as (_, axis):
             for place in ('elsewhere', f'{runs}/../up', f'{runs}/away/x', '/dev/shm/x', '~/x'):
                 answer = axis.set_parameters(record__folder=place)
                 assert not answer.successful
@@ -88,8 +88,7 @@ class TestFullDisk:
     def test_ends_the_recording_not_the_axis(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'
         with live_axis(*recording_into(folder), prepare=with_small_files) as (process, axis):
-            status, _ = axis.status('recorder', lambda values: int(values['dropped']) > 0)
-            assert status.level == b'\2'
+            status, _ = axis.status('recorder', lambda values: int(values['dropped']) > 0, b'\2')
             assert 'File too large; the recording ends here' in status.message
             wait_for(lambda: axis.latest('run_info').bag_path == '', 'run_info without a bag')
             step = axis.latest('slider_state').step

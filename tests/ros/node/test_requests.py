@@ -28,7 +28,7 @@ from tests.support import standard_package
 from tests.support.made_up_texts import NAMES
 from tests.support.node_processes import assert_clean, recording_into, running
 from tests.support.ros_nodes import Client, client, live_axis
-from tests.support.waiting import wait_for
+from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -116,7 +116,7 @@ class TestStandardServices:
 
         def call(*services: str) -> list[Any]:
             done = subprocess.run([sys.executable, '-m', 'tests.support.standard_package', *services],
-                                  capture_output=True, text=True, check=False)
+                                  capture_output=True, text=True, timeout=DEADLINE, check=False)
             assert done.returncode == 0, done.stderr
             answers: list[Any] = json.loads(done.stdout)
             return answers
@@ -124,7 +124,7 @@ class TestStandardServices:
         return call
 
     def test_while_time_runs_by_itself(self, ask: Ask) -> None:
-        with live_axis(afresh=True) as (process, axis):
+        with live_axis('time.rate:=200.0', afresh=True) as (process, axis):
             features, *states, steps, scope = ask(
                 'get_simulator_features', 'get_simulation_state', set_state(PLAYING), set_state(PAUSED),
                 'get_simulation_state', set_state(QUITTING), set_state(STOPPED), 'get_simulation_state',

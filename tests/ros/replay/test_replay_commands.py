@@ -20,6 +20,7 @@ from stickslip_sim.bags.topics import DRIVE_VELOCITY, RIG_EVENT, SLIDER_STATE, T
 from stickslip_sim.check.verification import verify
 from stickslip_sim.recording import RECORDED, Bag, flat_layout, open_bag, open_run, read_run
 from stickslip_sim.recording.messages import Packer
+from stickslip_sim.ros.replay import live_axis as axis_of_replay
 from stickslip_sim.simulation import RigEventKind
 from tests.support.busy_machine import judged_by_time
 from tests.support.eventful_runs import eventful_run
@@ -27,6 +28,7 @@ from tests.support.node_processes import NodeProcess, assert_clean, recording_in
 from tests.support.recorded_runs import FACTS, samples
 from tests.support.rigs import rig_events_in
 from tests.support.ros_nodes import Client, client, live_axis
+from tests.support.tool import restore_interrupt
 from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -66,8 +68,14 @@ def stamped(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, float, floa
     return folder, begin, time.time()
 
 
-def replaying(folder: Path, *arguments: str, afresh: bool = False) -> AbstractContextManager[NodeProcess]:
-    return running(f'bag:={folder}', 'mode:=commands', *arguments, program='replay_node', afresh=afresh)
+def replaying(folder: Path, *arguments: str, **options: Any) -> AbstractContextManager[NodeProcess]:
+    return running(f'bag:={folder}', 'mode:=commands', *arguments, program='replay_node', **options)
+
+
+def impatient() -> None:
+    """For `prepare`."""
+    restore_interrupt()
+    axis_of_replay.PATIENCE = 1.0
 
 
 def ended(process: NodeProcess) -> str:
@@ -260,4 +268,7 @@ class TestRealTime:
             viewer.next('slider_state', lambda state: state.drive_velocity == -0.003)
 
     def test_nobody_there(self, recorded: Path) -> None:
-        assert "axis = '/feed_axis' is refused: must be a sim_node that runs; none answers" in refusal(recorded)
+        with replaying(recorded, prepare=impatient) as replay:
+            code, errors = replay.wait()
+        assert code == 2
+        assert "axis = '/feed_axis' is refused: must be a sim_node that runs; none answers" in errors

@@ -24,7 +24,7 @@ from ..environment import refusing
 from ..node.endpoints import subscription
 from .player import StoppedError, wait_until
 
-_PATIENCE = 10.0     # s for the axis to be there
+PATIENCE = 10.0      # s for the axis to be there; a test of it has less
 _LOOK = 0.05         # s between two looks at whether to stop
 _LOOKS = 20          # before a question is put again
 _SERVICES = {
@@ -79,7 +79,7 @@ class LiveAxis:
     def send(self, service: str, take: Callable[[Any], None], **request: Any) -> None:
         """Call a service; `take` gets the answer later, in another thread."""
         client = self._clients[service]
-        if not wait_until(client.service_is_ready, self._stop, _PATIENCE):
+        if not wait_until(client.service_is_ready, self._stop, PATIENCE):
             raise InputError('axis', self.name, f'a sim_node that runs; none answers on ~/{service}', 'start it first')
         future = client.call_async(_SERVICES[service].Request(**request))
         future.add_done_callback(lambda done: take(done.result()))
@@ -97,7 +97,7 @@ class LiveAxis:
         if answer.success:
             return
         self._timing = None
-        step = self._timing.step if wait_until(lambda: self._timing, self._stop, _PATIENCE) and self._timing else None
+        step = self._timing.step if wait_until(lambda: self._timing, self._stop, PATIENCE) and self._timing else None
         if step != 0:
             raise InputError('axis', self.name, f'at step 0, but is at {step}', f'~/reset is {answer.message}')
 
