@@ -128,16 +128,16 @@ def follow(axis: Axis, drive: InputProfile, force: InputProfile, duration: float
     return pieces
 
 
-@pytest.mark.parametrize('seed', range(24))
+@pytest.mark.parametrize('seed', range(16))
 def test_random_axes_under_random_sinusoids_follow_the_model(seed: int) -> None:
     rng = random.Random(seed)
     axis = random_axis(rng)
     drive, force = random_profiles(rng, axis)
-    follow(axis, drive, force, 1.6)
+    follow(axis, drive, force, 1.0)
 
 
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
 def test_paper_axis_under_sinusoids_follows_the_model(contact: Any) -> None:
     drive = with_sinusoids(constant(0.002), (0.001, 3.0, 0.3))
     force = with_sinusoids(constant(0.0), (100.0, 20.0, 0.0), (50.0, 6.5896, 1.0))
-    assert follow(paper_axis(contact), drive, force, 3.0) > 40
+    assert follow(paper_axis(contact), drive, force, 2.0) > 25
