@@ -61,7 +61,7 @@ def _mode(rng: random.Random, kind: str) -> tuple[float, float]:
 @pytest.mark.parametrize('kind', KINDS)
 def test_the_moments_of_a_motion(kind: str) -> None:
     rng = random.Random(kind)
-    for _ in range(15):
+    for _ in range(8):
         gamma, omega2 = _mode(rng, kind)
         fastest = abs(gamma) + math.sqrt(abs(gamma * gamma - omega2))
         t = 10.0 ** rng.uniform(-5, 1) / fastest
@@ -169,7 +169,7 @@ def _exact_waves(gamma: float, omega2: float, frequency: float, t: float) -> lis
 def _cases() -> list[tuple[float, float, float, float]]:
     rng = random.Random(5)
     cases = []
-    for _ in range(1500):
+    for _ in range(600):
         omega = rng.choice((0.0, 10 ** rng.uniform(-3, 4)))
         gamma = rng.choice((0.0, 1.0, 1.0 + 1e-9, rng.uniform(-0.2, 0.3), 10 ** rng.uniform(-3, 3))) * (omega or 1.0)
         frequency = rng.choice((omega / TURN or 0.1, (omega or 1.0) / TURN * (1.0 + 10 ** rng.uniform(-15, -1)),

@@ -6,8 +6,9 @@ import dataclasses
 import json
 import math
 import statistics
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import pytest
@@ -15,7 +16,7 @@ import pytest
 from benchmarks.smooth_reference import SmoothRun
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import steps
-from stickslip_sim.core.types import EventKind
+from stickslip_sim.core.types import Event, EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.reference import simulate
 from stickslip_sim.runs import simulate_events
@@ -44,6 +45,15 @@ def test_the_true_error_is_within_the_estimate_and_not_far_below() -> None:
         assert statistics.median(ratios) >= 0.01
 
 
+WITH_STEPS = 1.5   # s
+
+
+@cache
+def true_events(name: str) -> Sequence[Event]:
+    scene = load_scene(name)
+    return simulate(scene.axis, scene.initial, scene.drive, scene.force, WITH_STEPS, 30).events
+
+
 @pytest.mark.parametrize('name', ['paper_fig4_falling', 'paper_fig7', 'cutting_force'])
 @pytest.mark.parametrize('settings', [
     SolverSettings('adaptive', 'DOP853', rtol=1e-3, atol=1e-5),
@@ -54,11 +64,9 @@ def test_the_true_error_is_within_the_estimate_and_not_far_below() -> None:
     ids=lambda settings: '-'.join(map(str, settings.settings.values())))
 def test_the_error_of_steps_is_within_the_estimate_too(name: str, settings: SolverSettings) -> None:
     """Where the calls bound the steps of an adaptive solver, a tenth of the tolerance takes the same steps again."""
-    scene, duration = dataclasses.replace(load_scene(name), solver=settings), 1.5
-    run = simulate_events(scene, duration)
+    run = simulate_events(dataclasses.replace(load_scene(name), solver=settings), WITH_STEPS)
     estimate = error_estimate(run)
-    want = [event for event in simulate(scene.axis, scene.initial, scene.drive, scene.force, duration, 30).events
-            if settings.name == 'adaptive' or event.kind != EventKind.KNOT]
+    want = [event for event in true_events(name) if settings.name == 'adaptive' or event.kind != EventKind.KNOT]
     pairs = [(a, b) for a, b in zip(run.events, want) if a.time < estimate.until_s]
     assert pairs
     assert all((a.kind, a.direction) == (b.kind, b.direction) for a, b in pairs)
