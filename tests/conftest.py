@@ -99,3 +99,14 @@ def fig8_bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp('runs') / 'eight'
     assert run(['simulate', 'paper_fig8', '--duration', '3', '--bag', str(folder)]) == 0
     return folder
+
+
+@pytest.fixture
+def blank_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the pages of `stickslip compare` show blank pictures, for tests that look at none: to draw takes seconds."""
+    def blank(_shown: object, *paths: Path) -> None:
+        for path in paths:
+            path.write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
+
+    for name in ('plot_motion', 'plot_characteristics', 'plot_side_by_side'):
+        monkeypatch.setattr(f'stickslip_sim.compare.pictures.{name}', blank)

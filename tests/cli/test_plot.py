@@ -123,6 +123,7 @@ LOAD = {'normal_load.course': 'sine', 'normal_load.amplitude': 1000.0, 'normal_l
 SECONDS = 2.0
 
 
+@pytest.mark.usefixtures('blank_pictures')
 def test_its_tables_bag_and_pictures(tmp_path: Path, capsys: Capture) -> None:
     run = simulate(load_scene('paper_fig8', LOAD), SECONDS, 0.001)
     changes = [word for name, value in LOAD.items() for word in ('--set', f'{name}={value}')]

@@ -18,10 +18,7 @@ from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
 
 
-@pytest.fixture(autouse=True)
-def one_format(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw what the page shows alone: no test here looks at another picture."""
-    monkeypatch.setattr('stickslip_sim.compare.pictures.PICTURE_KINDS', ('svg',))
+pytestmark = pytest.mark.usefixtures('blank_pictures')
 
 
 def refused(capsys: Capture, tmp_path: Path, *arguments: str | Path) -> str:
