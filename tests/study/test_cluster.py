@@ -26,7 +26,7 @@ pytestmark = pytest.mark.slow
 
 if importlib.util.find_spec('distributed') is None:   # not imported: it takes a third of a second
     pytest.skip('needs the extra cluster', allow_module_level=True)
-LONG = ['sweep', 'paper_fig7', '--over', 'drive.velocity=1e-3:0.03:16000:log', '--duration', '60']   # eight chunks
+LONG = ['sweep', 'paper_fig7', '--over', 'drive.velocity=1e-3:0.03:10000:log', '--duration', '40']   # five chunks
 ABSENT = 'tcp://127.0.0.1:9'
 _PATIENCE = 30.0   # s
 
@@ -94,7 +94,7 @@ def test_a_worker_killed_in_the_middle_changes_no_bit(cluster: Cluster, tmp_path
     cluster.workers[0].send_signal(signal.SIGKILL)
     said, error = process.communicate(timeout=_PATIENCE)
     assert (process.returncode, error) == (0, ''), error
-    assert '16000 of them run now' in said
+    assert '10000 of them run now' in said
     assert run([*LONG, '--out', str(alone)]) == 0
     assert (out / POINTS_TABLE).read_bytes() == (alone / POINTS_TABLE).read_bytes()
 

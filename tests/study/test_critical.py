@@ -93,7 +93,7 @@ def test_sliding_on_the_papers_slope_is_lost_from_2000_newtons_on_and_both_motio
 
 def test_runs_from_sliding_agree() -> None:
     scene = load_scene('paper_fig4_falling', {'drive.velocity': 0.0175})
-    found = critical_of(scene, Variation('axis.drive_damping', 5000.0, 9000.0), ACCURACY)
+    found = critical_of(scene, Variation('axis.drive_damping', 5000.0, 9000.0), 1e-5)
     (lost,) = found.from_sliding.transitions
     for share, grows in ((0.999, True), (1.001, False)):
         axis = load_scene('paper_fig4_falling', {'axis.drive_damping': share * lost.value}).axis
@@ -118,12 +118,12 @@ def test_sticks_between_reversals_last_however_heavy_the_slider_is() -> None:
     assert found.from_rest == Findings(YES, ())
 
 
-@pytest.mark.parametrize(('changes', 'name', 'low', 'high'), [
-    ({}, 'axis.drive_damping', 1e4, 1.3e4), ({'drive.velocity': 0.02}, 'axis.normal_force', 1900.0, 2300.0)])
+@pytest.mark.parametrize(('name', 'low', 'high'), [
+    ('axis.drive_damping', 3e3, 1e5), ('axis.normal_force', 1900.0, 2300.0)])
 def test_what_is_reported_of_intermittent_stick_slip_is_what_long_runs_do(
-        changes: dict[str, object], name: str, low: float, high: float) -> None:
+        name: str, low: float, high: float) -> None:
     """Between sticks the slider swings, ever longer towards the border, and may slip out by chance."""
-    scene = load_scene('paper_fig8', changes)
+    scene = load_scene('paper_fig8', {'drive.velocity': 0.02})
     (one,) = critical_of(scene, Variation(name, low, high, log=True), 1e-9).from_rest.transitions
     assert not one.resolved
     ends = [sticks_late(scene_at(scene.values, [name], np.array([value])), 1e4, 5e3) for value in (one.low, one.high)]

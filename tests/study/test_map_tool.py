@@ -17,7 +17,7 @@ from stickslip_sim.figures.cycles import cycle_figures
 from stickslip_sim.figures.point_figures import Runs
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.study import EvenGrid, Study, variation
+from stickslip_sim.study import EvenGrid, Study, diagrams, variation
 from stickslip_sim.study.diagrams import bifurcation, borders, ending_at
 from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.study import study_of
@@ -37,14 +37,13 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_a_map_with_picks(swept: Path, tmp_path: Path) -> None:
     pictures = [tmp_path / 'map.png', tmp_path / 'map.svg']
     assert run(['map', str(swept), *(word for path in pictures for word in ('--out', str(path))),
-                '--pick', '0.002,6e5', '--pick', '0.05,3e5', '--show', 'period']) == 0
+                '--pick', '0.002,6e5', '--show', 'period']) == 0
     assert pictures[0].read_bytes().startswith(b'\x89PNG')
     text = pictures[1].read_text()
     for words in ('drive velocity / (mm/s)', 'drive stiffness / (N/µm)', 'period / ms', 'smooth sliding',
                   'steady sliding loses stability', 'spring stretch / mm'):
         assert words in text
-    assert run(['map', str(swept), '--out', str(tmp_path / 'again.svg'), '--pick', '0.002,6e5', '--pick', '0.05,3e5',
-                '--show', 'period']) == 0
+    assert run(['map', str(swept), '--out', str(tmp_path / 'again.svg'), '--pick', '0.002,6e5', '--show', 'period']) == 0
     assert (tmp_path / 'again.svg').read_text() == text
 
 
@@ -58,6 +57,7 @@ def test_only_a_picked_point_that_the_table_lacks_is_run_until_it_settles(
         return runs(study, points)
 
     monkeypatch.setattr(Study, 'runs', counted)
+    monkeypatch.setattr(diagrams, 'draw_map', lambda *given: [Path(path).touch() for path in given[-1]])
     assert run(['map', str(swept), '--out', str(tmp_path / 'map.svg'), '--pick', point]) == 0
     assert len(ran) == times
 

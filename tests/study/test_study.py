@@ -273,15 +273,14 @@ def test_a_sweep_has_the_figures_of_its_study() -> None:
     assert found.motions[-1] == 'smooth sliding'
 
 
-@pytest.mark.parametrize('solver', ['exact', 'adaptive'])
-@pytest.mark.parametrize('duration', [20.0, None])
-def test_sliding_that_swings_on_is_called_so_as_by_a_run(duration: float | None, solver: str) -> None:
+@pytest.mark.parametrize(('solver', 'duration'), [('exact', 20.0), ('exact', None), ('adaptive', 10.0)])
+def test_sliding_that_swings_on_is_called_so_as_by_a_run(solver: str, duration: float | None) -> None:
     """By 19 mm/s about the feed of 30 mm/s, for ever, though steady sliding is stable."""
     scene = load_scene('paper_fig8', {'axis.normal_force': 1500.0, 'solver.name': solver})
-    found = sweep(scene, 'drive.velocity=0.03:0.0301:2', duration=duration or (None if solver == 'exact' else 10.0))
+    found = sweep(scene, 'drive.velocity=0.03:0.0301:2', duration=duration)
     assert found.motions == ['sliding that swings on'] * 2
     assert found.columns['settled'].tolist() == [0.0, 0.0]
-    assert simulate_events(changed(scene, {'drive.velocity': 0.03}), 20.0).summary.motion == found.motions[0]
+    assert simulate_events(changed(scene, {'drive.velocity': 0.03}), duration or 20.0).summary.motion == found.motions[0]
 
 
 def test_points_can_be_drawn() -> None:
