@@ -13,7 +13,7 @@ from stickslip_sim.identification.identified import NOT_IDENTIFIABLE, VOID
 from stickslip_sim.identification.results import IDENTIFIED_SCENE, write_results
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import changed
-from tests.support.measured_runs import MOTOR, OF_FRICTION, OFF, RIGID, as_run, between, check, estimate_of
+from tests.support.measured_runs import MOTOR, OF_FRICTION, OFF, RIGID, as_run, between, check, estimate_of, few_starts
 
 pytestmark = pytest.mark.slow
 
@@ -44,6 +44,7 @@ def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
     assert found.runs < 2000
 
 
+@few_starts()
 def test_a_motor_force_on_an_axis_that_is_not_quite_the_model(tmp_path: Path) -> None:
     """Its friction varies along the way; the scene that is found still follows the position of the whole run."""
     random = np.random.default_rng(3)
@@ -74,7 +75,7 @@ def test_a_slider_that_is_pushed_and_rests_from_a_start_far_off(static: float, t
         'friction.kinetic.coefficients': None, 'friction.kinetic.end_slope': None, 'friction.kinetic.initial': 0.3,
         'friction.kinetic.limit': 0.2, 'friction.kinetic.stribeck_velocity': 0.01, 'friction.kinetic.viscous': 1.0,
         'force.course': 'table', 'force.times': pushes, 'force.forces': forces})
-    samples = stickslip.simulate(axis, 4.0, 1e-3).samples
+    samples = stickslip.simulate(axis, 4.0, 2e-3).samples
     noise = np.random.default_rng(6).normal(0.0, 0.3, len(samples['time']))
     run = as_run(tmp_path / 'run', samples['time'], {
         'position': np.round(samples['position'], 7), 'drive_force': samples['external_force'] + 2.0 + noise})
@@ -101,20 +102,21 @@ def test_what_is_no_run_and_no_scene_is_said_so(tmp_path: Path) -> None:
 
 
 def positioned(folder: Path) -> stickslip.Run:
-    """Return 25 s of a positioning axis at 1 kHz: the force acts 2 ms late and is read 3 N too low; friction varies."""
+    """Return 15 s of a positioning axis at 1 kHz: the force acts 2 ms late and is read 3 N too low; friction varies."""
     random = np.random.default_rng(4)
-    times = 1e-3 * np.arange(25_001, dtype=np.float64)
+    times = 1e-3 * np.arange(15_001, dtype=np.float64)
     way = 0.08 * np.sin(0.9 * times) + 0.04 * np.sin(2.3 * times)
     speed = np.gradient(way, times)
     force = 95.0 * np.gradient(speed, times) + 20.0 * np.sign(speed) + 200.0 * speed
     late = (0.0, *(times[1:] + 2e-3).tolist())
     uneven = force - 2.0 * np.sin(2.0 * np.pi * way / 0.03)   # N
     axis = changed(MOTOR, {'force.course': 'table', 'force.times': late, 'force.forces': tuple(uneven)})
-    samples = stickslip.simulate(axis, 25.0, 1e-3).samples
+    samples = stickslip.simulate(axis, 15.0, 1e-3).samples
     return as_run(folder, times, {'position': np.round(samples['position'], 6),
                                    'drive_force': force - 3.0 + random.normal(0.0, 0.1, len(times))})
 
 
+@few_starts()
 @pytest.mark.parametrize('static', [0.2, 0.6])   # with the second each noisy break-away is a jump
 def test_an_offset_alone_under_a_measured_force(static: float, tmp_path: Path) -> None:
     start = changed(MOTOR, {'force.course': 'constant', 'friction.static.initial': static})
@@ -182,6 +184,7 @@ FREE = {'axis.mass': between(50.0, 200.0), 'friction.kinetic.coefficients[0]': b
         'friction.static.initial': between(0.05, 0.5), 'sensor.external_force.offset': between(-10.0, 10.0)}
 
 
+@pytest.mark.usefixtures('blank_pictures')
 def test_a_measured_force_is_in_the_scene_that_was_found(tmp_path: Path) -> None:
     run = measured(tmp_path / 'run')
     found = stickslip.identify(run, START, FREE)
@@ -207,6 +210,7 @@ def test_a_motor_axis_that_is_measured_from_mid_motion_on(tmp_path: Path) -> Non
     assert found.values['friction.kinetic.coefficients[0]'] == pytest.approx(0.2, rel=0.03)
 
 
+@pytest.mark.usefixtures('blank_pictures')
 def test_numbers_of_sensors_alone(tmp_path: Path) -> None:
     """The offset of a force where all else is known; no number of the scene is left open."""
     run = measured(tmp_path / 'run')

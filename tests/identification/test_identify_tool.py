@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from stickslip_sim.identification import many_fits, stages
+from stickslip_sim.identification import many_fits
 from stickslip_sim.identification.many_fits import WorkFolder
 from stickslip_sim.identification.stages import fit_from
 from stickslip_sim.inputs import load_scene
-from tests.support.measured_runs import FREE, VALUES, Readings, free_file, readings, start_scene
+from tests.support.measured_runs import FREE, VALUES, Readings, few_starts, free_file, readings, start_scene
 from tests.support.tool import Capture, answered, refused
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.usefixtures('blank_pictures')]
 
 WIDE = {'axis.drive_stiffness': (5e4, 1e6), 'friction.static.initial': (0.15, 0.9),
         'friction.kinetic.coefficients[0]': (0.02, 0.15), 'friction.kinetic.coefficients[1]': (0.01, 0.3),
@@ -76,6 +76,7 @@ def test_from_a_file_to_a_scene_that_the_other_verbs_take(tmp_path: Path, start:
     assert spread['95'] / spread['5'] < 1.02
 
 
+@few_starts()
 def test_a_model_that_does_not_fit_has_its_files_and_exit_code_3(tmp_path: Path, start: Path, capsys: Capture) -> None:
     """The axis has half the mass of the scene, and that is not free."""
     run, out = imported(tmp_path, readings({**VALUES, 'axis.mass': 50.0}, 2.0), capsys), tmp_path / 'found'
@@ -180,10 +181,10 @@ def without_a_fit(tmp_path: Path, start: Path, capsys: Capture) -> tuple[Path | 
     return ('identify', run, '--scene', start, '--free', free_file(tmp_path / 'free.yaml', WIDE), '--out')
 
 
+@few_starts()
 def test_an_interrupted_one_ends_as_one_of_two_processes(without_a_fit: tuple[Path | str, ...], tmp_path: Path,
                                                          capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
     whole, cut = tmp_path / 'whole', tmp_path / 'cut'
-    monkeypatch.setattr(stages, 'N_STARTS', 1)   # of eight: a few fits are enough
     assert answered(capsys, *without_a_fit, whole, '--workers', '2')[0] == 3
     done: list[int] = []
 
@@ -210,6 +211,7 @@ def test_an_interrupted_one_ends_as_one_of_two_processes(without_a_fit: tuple[Pa
     assert 'the folder of an interrupted identification' in refused(capsys, *without_a_fit, cut, '--resume')
 
 
+@few_starts()
 def test_another_one_is_not_gone_on_with(without_a_fit: tuple[Path | str, ...], tmp_path: Path, capsys: Capture,
                                          monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(*_: Any) -> Any:

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measured runs for the tests of the identification: scenes through sensors with noise, and the truth."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ import pytest
 
 import stickslip_sim as stickslip
 from stickslip_sim.core.arrays import Numbers
+from stickslip_sim.identification import stages
 from stickslip_sim.identification.identified import FOUND, Estimate, Identification
 from stickslip_sim.recording import read_run, write_measured
 from stickslip_sim.recording.measured_run import MeasuredRun
@@ -26,6 +28,15 @@ def as_run(folder: Path, times: Numbers, columns: Mapping[str, Numbers]) -> Meas
     run = read_run(folder)
     assert isinstance(run, MeasuredRun)
     return run
+
+
+@contextmanager
+def few_starts(count: int = 1) -> Iterator[None]:
+    """Where no start fits, a few of them, and of few trial points, say as much as ten of 256."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in {'N_STARTS': count, 'N_WHOLE': 1, 'N_TRIALS': 32}.items():
+            patch.setattr(stages, name, value)
+        yield
 
 
 def between(low: float, high: float) -> dict[str, object]:

@@ -28,12 +28,12 @@ from .slip_features import MeasuredSlip
 # What the readings say by themselves is taken from them first: spring and damper from the measured force, static
 # friction from the break-aways.
 
-N_STARTS, N_WHOLE = 8, 2   # fitted of the trial points, the best by figures of slips and by the whole run
+N_TRIALS = 256              # points beside the given one, a power of two
+N_STARTS, N_WHOLE = 8, 2   # fitted of them, the best by figures of slips and by the whole run
 ROBUST = 3.0            # figures of slips: beyond, a coarse fit counts their size
 _COARSE_STEP = 1e-5
 _STEEPEST = 1e4          # figures of slips over a logarithm: a hundred times in proportion
 _ASIDE = 0.2             # of a number, or of its range: so far off friction at rest may be
-_TRIALS = 256           # points beside the given one, a power of two
 _TRIAL_SLIPS = 5        # at each of them
 _SLIPS = 10             # at most, for the coarse fit
 _NEAR_START = 3.0             # of the cost of a slip, in the mean: a start that is fitted before others are tried
@@ -86,7 +86,7 @@ def _shares(problem: FitProblem, seed: int) -> Numbers:
     """Return points (256, k) spread evenly over a cube."""
     from scipy.stats import qmc  # takes half a second, and most runs need no other start
 
-    return np.asarray(qmc.Sobol(len(problem.start), seed=seed).random(_TRIALS))
+    return np.asarray(qmc.Sobol(len(problem.start), seed=seed).random(N_TRIALS))
 
 
 def _nearest(problem: FitProblem, trials: Sequence[Numbers]) -> list[Numbers]:
