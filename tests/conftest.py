@@ -103,10 +103,13 @@ def fig8_bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def blank_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the pages of `stickslip compare` show blank pictures, for tests that look at none: to draw takes seconds."""
-    def blank(_shown: object, *paths: Path) -> None:
-        for path in paths:
-            path.write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
+    """Let pages of runs and of identified axes show blank pictures, for tests that look at none: to draw takes seconds."""
+    def blank(*given: object) -> None:
+        for path in given:
+            if isinstance(path, Path):
+                path.write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
 
-    for name in ('plot_motion', 'plot_characteristics', 'plot_side_by_side'):
-        monkeypatch.setattr(f'stickslip_sim.compare.pictures.{name}', blank)
+    for module, names in {'compare.pictures': ('motion', 'characteristics', 'side_by_side'),
+                          'identification.results': ('fit', 'residuals', 'known_friction', 'correlations')}.items():
+        for name in names:
+            monkeypatch.setattr(f'stickslip_sim.{module}.plot_{name}', blank)

@@ -58,6 +58,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Path:
 TEST_FORCES = (40.0, 90.0, -45.0, -80.0, 60.0, -40.0, -70.0, 55.0)
 
 
+@pytest.mark.usefixtures('blank_pictures')
 def test_another_run_is_followed_by_its_own_force(found: Path, tmp_path: Path, capsys: Capture) -> None:
     """To a thousandth of its way; the force of the run that it was identified from leads elsewhere."""
     run = measured(tmp_path / 'test', TEST_FORCES, begin=0.01)

@@ -17,7 +17,6 @@ from tests.support import tool
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture
 
-
 pytestmark = pytest.mark.usefixtures('blank_pictures')
 
 
