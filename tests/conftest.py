@@ -103,7 +103,7 @@ def fig8_bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def blank_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let pages of runs and of identified axes show blank pictures, for tests that look at none: to draw takes seconds."""
+    """Let pages of runs and of identified axes show blank pictures, for tests that look at none; to draw is slow."""
     def blank(*given: object) -> None:
         for path in given:
             if isinstance(path, Path):

@@ -78,7 +78,7 @@ class TestDemonstration:
 
 @pytest.fixture(scope='class')
 def axis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with running(folder=tmp_path_factory.mktemp('axis'), afresh=True), client() as it:
+    with running(folder=tmp_path_factory.mktemp('axis')), client() as it:
         it.connect()
         yield it
 
@@ -110,7 +110,7 @@ def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
     """In a namespace where there is none, and where there is one; all at once, as each takes its time."""
     nowhere = '--ros-args', '-r', '__ns:=/nowhere'
     with ExitStack() as ended:
-        ended.enter_context(running('-r', '__ns:=/cell', afresh=True))
+        ended.enter_context(running('-r', '__ns:=/cell'))
         ended.enter_context(client('/cell')).connect()
         waiting = [ended.enter_context(started(sys.executable, *example, *nowhere)) for example in (
             [CONTROLLER], [SETPOINT], [SETPOINT, '--lockstep'], [LOCKSTEP], [DRIVE, '0.001'])]
@@ -126,7 +126,7 @@ def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
 class TestSetpoint:
     def test_it_is_followed_on_the_encoders(self, tmp_path: Path) -> None:
         moved: list[float] = []
-        with running(*ENCODERS, folder=tmp_path, afresh=True), client() as axis:
+        with running(*ENCODERS, folder=tmp_path), client() as axis:
             axis.connect()
             for _ in range(3):    # one that waits a second for a core goes too far
                 begin = axis.latest('slider_state').position
