@@ -223,10 +223,11 @@ class Client:
         return self.call(GetParameters, 'get_parameters', names=list(names)).values
 
     def status(self, name: str, is_it: Callable[[dict[str, str]], bool] = lambda _: True,
-               level: bytes | None = None) -> Any:
+               level: bytes | None = None, begin: int | None = None) -> Any:
         """Return the next status of /diagnostics by that name, of a level, and its values that fulfil a condition.
 
-        The values count what comes while a report is made; its level may have it in the next one only.
+        The values count what comes while a report is made; its level may have it in the next one only.  A level that
+        one report alone has may be heard before it is asked for: `begin` is the number of messages before its cause.
         """
         def find(message: Any) -> Any:
             return next(status for status in message.status if status.name.endswith(f'/feed_axis: {name}'))
@@ -237,7 +238,7 @@ class Client:
         def is_meant(status: Any) -> bool:
             return level in (None, status.level) and is_it(pairs(status))
 
-        status = find(self.next('/diagnostics', lambda message: is_meant(find(message))))
+        status = find(self.next('/diagnostics', lambda message: is_meant(find(message)), begin=begin))
         return status, pairs(status)
 
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 from ..axis import Axis, InitialState
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
-from .problem import Final, ReferenceRun
+from .result import Final, ReferenceRun
 
 __all__ = ['Final', 'ReferenceRun', 'simulate']
 

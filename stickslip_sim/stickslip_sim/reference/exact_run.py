@@ -15,7 +15,8 @@ from ..core import types
 from .flow import Flow, State, after
 from .modes import Mode, word
 from .physics import Physics
-from .problem import Final, Input, ReferenceRun, Signal
+from .problem import Input, Signal
+from .result import Final, ReferenceRun
 from .series import working
 
 

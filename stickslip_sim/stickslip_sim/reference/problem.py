@@ -11,20 +11,16 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from mpmath import cos, inf, mp, mpf, pi, sin
 
 from ..axis import parameters as product
 from ..core import input_profile as profiles
 from ..core.input_profile import InputProfile
-from ..core.types import Event, Mode
 from ..friction import ExcessTable, KineticTable
 from .series import Series, series, to_decimal
 from .statics import StaticLaw
-
-if TYPE_CHECKING:
-    from .exact_run import Run
 
 
 @dataclass(frozen=True)
@@ -326,25 +322,3 @@ def _segments(profile: InputProfile) -> Iterator[Segment]:
         if math.isinf(profile.period):
             return
         turn += 1
-
-
-# The result of a run of the reference: the words of the package, floats, each the one nearest to the exact value.
-
-class Final(NamedTuple):
-    """The state at the end of a run."""
-
-    position: float  # m
-    velocity: float  # m/s
-    drive_position: float  # m
-    mode: Mode
-
-
-class ReferenceRun(NamedTuple):
-    """`events` and `final` state, correctly rounded; `exact` keeps the values in multiple precision.
-
-    `exact` is the list of events as `exact_run.Event`, and has `state_at(times)`.
-    """
-
-    events: list[Event]
-    final: Final
-    exact: Run

@@ -172,9 +172,10 @@ class TestRefusals:
             refusals = Refusals(axis)
             axis.send_force(math.nan)
             assert refusals.named(self.FORCE) == ('force', 1)
+            before = len(axis.heard['/diagnostics'])
             axis.send_velocity(5.0)
             assert refusals.named(self.VELOCITY) == ('velocity', 1)
-            _, values = axis.status('command', lambda values: values['velocity refused'] == '1', b'\1')
+            _, values = axis.status('command', lambda values: values['velocity refused'] == '1', b'\1', before)
             assert values['force last refusal'] == self.FORCE
             said = [status.message for message in axis.heard['/diagnostics'] for status in message.status
                     if status.name == '/feed_axis: command' and 'refused' in status.message]

@@ -154,8 +154,9 @@ class TestCommands:
             good = JointState(name=['axis_drive'], velocity=[0.004], position=[1.0])
             wait_for(lambda: out.publish(good) or axis.latest('slider_state').drive_velocity == 0.004, 'the node')
             for count, message in enumerate(messages, 1):
+                before = len(axis.heard['/diagnostics'])
                 out.publish(message)
-                status, _ = axis.status('command', has_refused(count), b'\1')
+                status, _ = axis.status('command', has_refused(count), b'\1', before)
                 assert 'the previous command stays' in status.message
             assert axis.next('slider_state').drive_velocity == 0.004
         assert "joint_commands.name = ['spindle'] is refused" in process.errors

@@ -124,7 +124,8 @@ class TestTheSameRun:
         late = {name: [mark for mark in read_run(tmp_path / name).marks if mark.label.startswith('late ≤ ')]
                 for name in ('live', 'stepped')}
         assert late['live']
-        assert all(mark.is_of_host and mark.number > 0 for mark in late['live'])
+        assert all(mark.is_of_host for mark in late['live'])
+        assert sum(mark.number for mark in late['live']) > 0    # a step may be late by less than a period
         assert not late['stepped']
 
     def test_the_receipt_is_that_of_the_offline_run_however_long(self, tmp_path: Path) -> None:
