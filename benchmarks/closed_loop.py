@@ -1,33 +1,29 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A controller and the exact engine in lock-step, and the figures of what it does."""
+"""The controllers of the package in a loop with an axis, and the figures of what they do."""
 
 import math
-from collections import deque
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import NamedTuple
 
-from stickslip_sim.axis import Axis, InitialState
-from stickslip_sim.controllers import Controller, Following, Moves, Setpoint
-from stickslip_sim.core.input_profile import constant
-from stickslip_sim.core.time_grid import Grid
+import stickslip_sim as stickslip
+from stickslip_sim.controllers import Controller, Following, MoveProgress, Moves, Setpoint
+from stickslip_sim.controllers.own_controller import Measurement
+from stickslip_sim.core.time_grid import NANOSECONDS
 from stickslip_sim.core.types import Event, EventKind, Sample
-from stickslip_sim.simulation import Rig
-from stickslip_sim.simulation.encoder import EncoderSettings
-from stickslip_sim.simulation.rig import RigSettings
-from stickslip_sim.solvers import exact
+from stickslip_sim.simulation import Measured
 
 RATE = 1000.0   # steps a second
+_AT_REST = {'drive.course': 'constant', 'drive.velocity': 0.0}
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
-    """What a controller did with an axis: one setpoint, sample and command for each step, and all events."""
+class Run(NamedTuple):
+    """What a controller did with an axis: one setpoint, sample and command (m/s) for each step, and all events."""
 
     moves: Moves
     setpoints: list[Setpoint]
     samples: list[Sample]
-    commands: list[float]  # m/s
+    commands: list[float]
     events: list[Event]
 
 
@@ -42,31 +38,34 @@ class Figures(NamedTuple):
     end_error: float        # m, at the end of a dwell
 
 
-def close_loop(axis: Axis, controller: Controller, moves: Moves, duration: float, delay: int = 0,
-               encoder: EncoderSettings | None = None) -> Run:
-    """Let a controller drive an axis from prolonged rest for `duration` s, with ideal encoders unless given others.
+class Follower:
+    """A controller that follows its moves, and writes down its setpoints."""
 
-    The command made from the state after step n holds over step n + 1, or as many steps later as `delay` says.
+    def __init__(self, controller: Controller, moves: Moves) -> None:
+        self.setpoints: list[Setpoint] = []
+        self._following = Following(controller, moves)
+        self._progress: MoveProgress | None = None
+
+    def __call__(self, time: float, measured: Measurement) -> float:
+        answer = self._following.answer(self._progress, round(time * NANOSECONDS), Measured(*measured[:4]))
+        self._progress = answer.progress
+        self.setpoints.append(answer.setpoint)
+        return answer.command.velocity
+
+
+def close_loop(controller: Controller, moves: Moves, duration: float, delay: int = 0,
+               changes: Mapping[str, object] | None = None) -> Run:
+    """Let a controller drive the axis of `positioning` from prolonged rest for `duration` s.
+
+    Its commands hold `delay` steps later than from the next step on; `changes` are to parameters of the scene.
     """
-    grid = Grid(RATE)
-    settings = RigSettings(measures=True, encoder=encoder or EncoderSettings())
-    rig = Rig(axis, InitialState(), constant(0.0), constant(0.0), exact.SOLVER, grid, settings)
-    following, progress = Following(controller, moves), None
-    run = Run(moves, [], [], [], [])
-    waiting = deque([0.0] * delay)
-    command: float | None = None
-    for step in range(round(duration * RATE)):
-        result = rig.make_step(command)
-        assert result.measured is not None
-        answer = following.answer(progress, grid.nanoseconds(step), result.measured)
-        progress = answer.progress
-        waiting.append(answer.command.velocity)
-        command = waiting.popleft()
-        run.setpoints.append(answer.setpoint)
-        run.samples.append(result.sample)
-        run.commands.append(answer.command.velocity)
-        run.events.extend(result.events)
-    return run
+    late = {'faults.ids': ['late'], 'faults.kinds': ['command_delay'], 'faults.starts': [0.0],
+            'faults.durations': [math.inf], 'faults.values': [delay / RATE]} if delay else {}
+    scene = stickslip.load_scene('positioning', {**_AT_REST, **late, **(changes or {})})
+    follower, count = Follower(controller, moves), round(duration * RATE)
+    run = stickslip.close_loop(follower, scene, count / RATE)    # its last state is not answered
+    events = [event for event in run.events if event.time <= run.samples['time'][count - 1]]
+    return Run(moves, follower.setpoints, [*run.sample_rows()][:count], run.commands['velocity'].tolist(), events)
 
 
 def figures(run: Run) -> Figures:

@@ -4,17 +4,14 @@
 
     python3 -m benchmarks.controllers
 
-Everything is measured with the exact engine in lock-step at 1 kHz, and is the same on every machine.
+Everything is measured with the exact engine at 1 kHz, and is the same on every machine.
 """
 
 import pathlib
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping
 
-from stickslip_sim.axis import Axis
 from stickslip_sim.controllers import BranchCompensation, Cascade, Controller, Moves
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.simulation.encoder import EncoderSettings
 
 from .closed_loop import Figures, close_loop, figures
 from .controllers_picture import draw
@@ -41,10 +38,10 @@ def controllers(gains: Cascade | None = None) -> dict[str, Controller]:
     return {'cascade': Controller(gains), 'compensated': Controller(gains, BranchCompensation(AXIS))}
 
 
-def measure(moves: Moves, delay: int = 0, gains: Cascade | None = None, axis: Axis = AXIS,
-            encoder: EncoderSettings | None = None) -> dict[str, Figures]:
+def measure(moves: Moves, delay: int = 0, gains: Cascade | None = None, changes: Mapping[str, object] | None = None
+            ) -> dict[str, Figures]:
     """Return the figures of one period of the moves with both controllers; their model stays AXIS."""
-    return {name: figures(close_loop(axis, controller, moves, moves.period, delay, encoder))
+    return {name: figures(close_loop(controller, moves, moves.period, delay, changes))
             for name, controller in controllers(gains).items()}
 
 
@@ -83,7 +80,7 @@ def by_resolution() -> Iterator[str]:
     yield from _head('resolution', 'feed', 'cascade', 'compensated')
     for moves in (MOVES[1], SLOW_FEED):
         for resolution in RESOLUTIONS:
-            its = measure(moves, encoder=EncoderSettings(resolution=resolution))
+            its = measure(moves, changes={'encoder.resolution': resolution})
             yield _row(f'{resolution * _MICRO:g} µm', f'{moves.feed * _MILLI:g} mm/s', *map(_brief, its.values()))
 
 
@@ -91,8 +88,9 @@ def by_model() -> Iterator[str]:
     """Yield the table over what the model gets wrong."""
     yield from _head('the axis', 'cascade', 'compensated')
     for name, force, stiffness in WRONG:
-        axis = replace(AXIS, normal_force=force * AXIS.normal_force, drive_stiffness=stiffness * AXIS.drive_stiffness)
-        yield _row(name, *map(_brief, measure(SLOW_FEED, axis=axis).values()))
+        axis = {'axis.normal_force': force * AXIS.normal_force,
+                'axis.drive_stiffness': stiffness * AXIS.drive_stiffness}
+        yield _row(name, *map(_brief, measure(SLOW_FEED, changes=axis).values()))
 
 
 SECTIONS: dict[str, Callable[[], Iterator[str]]] = {
@@ -108,7 +106,7 @@ def main() -> None:
     """Replace the generated part of the page, and the picture."""
     text = '\n\n'.join(f'### {heading}\n\n' + '\n'.join(table()) for heading, table in SECTIONS.items())
     replace_generated(PAGE, f'{text}\n')
-    draw({name: close_loop(AXIS, each, SLOW_FEED, SLOW_FEED.period) for name, each in controllers().items()},
+    draw({name: close_loop(each, SLOW_FEED, SLOW_FEED.period) for name, each in controllers().items()},
          AXIS, PICTURE)
     print(f'written: {PICTURE}')
 

@@ -16,7 +16,10 @@ from .core.version import __version__
 TYPE_CHECKING = False   # what type checkers take for true; `typing` itself is not imported before it is needed
 
 if TYPE_CHECKING:
+    from .closed_loop import ClosedLoopRun, close_loop
+    from .controllers.own_controller import Command
     from .core.errors import (
+        ControllerError,
         InputError,
         RecordingError,
         RecordingWarning,
@@ -40,16 +43,19 @@ if TYPE_CHECKING:
     from .study.in_memory import critical, sweep, uncertainty
 
 __all__ = [
-    'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError', 'RecordingWarning', 'Run',
-    'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError', 'StickslipError', 'Summary', 'UnsoundError',
-    'VerdictError', '__version__', 'critical', 'error_estimate', 'identify', 'load_scene', 'read_run',
-    'run_batch', 'scene_names', 'sensitivities', 'simulate', 'simulate_events', 'sweep', 'uncertainty',
+    'ClosedLoopRun', 'Command', 'ControllerError', 'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode',
+    'RecordingError', 'RecordingWarning', 'Run', 'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError',
+    'StickslipError', 'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'critical',
+    'error_estimate', 'identify', 'load_scene', 'read_run', 'run_batch', 'scene_names', 'sensitivities', 'simulate',
+    'simulate_events', 'sweep', 'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
     _MODULES = {
-        '.core.errors': ('InputError', 'RecordingError', 'RecordingWarning', 'SolverError', 'StickslipError',
-                         'UnsoundError', 'VerdictError'),
+        '.closed_loop': ('ClosedLoopRun', 'close_loop'),
+        '.controllers.own_controller': ('Command',),
+        '.core.errors': ('ControllerError', 'InputError', 'RecordingError', 'RecordingWarning', 'SolverError',
+                         'StickslipError', 'UnsoundError', 'VerdictError'),
         '.core.types': ('Event', 'EventKind', 'Instant', 'Mode', 'Sample'),
         '.figures.cycles': ('Cycle', 'Summary'),
         '.identification.identify': ('identify',),

@@ -19,8 +19,8 @@ from tests.support.tool import Capture, answered
 
 pytestmark = pytest.mark.slow
 
-MAPS, IDENTIFICATION, PYTHON = ((ROOT / 'docs' / f'{name}.md').read_text(encoding='utf-8')
-                                for name in ('maps', 'identification', 'python'))
+MAPS, IDENTIFICATION, PYTHON, CLOSED_LOOP = ((ROOT / 'docs' / f'{name}.md').read_text(encoding='utf-8')
+                                             for name in ('maps', 'identification', 'python', 'closed_loop'))
 
 
 @pytest.fixture(autouse=True)
@@ -51,6 +51,24 @@ def test_the_blocks_of_python(clone: Path, capsys: Capture) -> None:
     assert {path.name for path in clone.iterdir()} == {'examples', 'run.png', 'runs'}
     for picture in ('run.png', 'runs/four.png'):
         assert (clone / picture).read_bytes().startswith(b'\x89PNG')
+
+
+def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
+    """The class in a file, the run in Python, and the commands one after the other."""
+    controller, loop = re.findall(r'^```python\n(.*?)^```$', CLOSED_LOOP, re.MULTILINE | re.DOTALL)
+    exec(controller + loop, {})
+    said = capsys.readouterr().out
+    assert said in CLOSED_LOOP.replace('    ', '')
+    assert (clone / 'run.png').read_bytes().startswith(b'\x89PNG')
+    (clone / 'my_controller.py').write_text(controller)
+    for name, ending in (('move.csv', 'csv'), ('limits.yaml', 'yaml')):
+        (part,) = re.findall(rf'^```{ending}\n(.*?)^```$', CLOSED_LOOP, re.MULTILINE | re.DOTALL)
+        (clone / name).write_text(part)
+    commands = re.findall(r'^    (stickslip (?:.*\\\n)*.*)$', CLOSED_LOOP, re.MULTILINE)
+    assert len(commands) == 4
+    for command in commands:
+        done(capsys, command.replace('\\\n', ' ').removeprefix('stickslip '))
+    assert (clone / 'shell.png').read_bytes().startswith(b'\x89PNG')
 
 
 class TestMaps:

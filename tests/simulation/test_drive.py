@@ -16,6 +16,7 @@ from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.core.types import Instant
 from stickslip_sim.simulation import Fault, Rig, RigEventKind, StepResult
 from stickslip_sim.simulation.drive import CommandChannel, Drive, DriveLimits
+from stickslip_sim.simulation.faults import Faults
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.rigs import AXIS, Script, bits, force, inject, make, rig_events_of, run, velocity
 
@@ -262,7 +263,7 @@ class TestDelay:
 
     @given(st.lists(st.tuples(st.integers(0, 20), st.integers(0, 60)), max_size=12), st.integers(0, 2**32))
     def test_a_command_never_undoes_a_later_one(self, sends: list[tuple[int, int]], seed: int) -> None:
-        channel, stream = CommandChannel(GRID, 0), random.Random(seed)
+        channel, stream = CommandChannel(0), random.Random(seed)
         under_way: list[tuple[int, int]] = []      # arrival, number
         step = newest = 0
         for number, (pause, delay) in enumerate(sends, 1):
@@ -273,6 +274,8 @@ class TestDelay:
                 assert taken == (max(due) if due else None)
                 newest = max([newest, *due])
             parts = [delay // 3, delay - delay // 3] if stream.random() < 0.5 else [delay]
-            faults = {str(i): Fault(str(i), 'command_delay', 0.0, 1.0, part / 1000) for i, part in enumerate(parts)}
-            assert channel.put(number, step + 1, faults)
+            faults = Faults(GRID, [Fault(str(i), 'command_delay', 0.0, 1.0, part / 1000) for i, part in enumerate(parts)
+                                   if part])
+            faults.enter(1)
+            assert channel.put(number, step + 1, faults.effect)
             under_way.append((step + 1 + delay, number))

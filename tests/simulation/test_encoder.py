@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.core.types import Mode, Sample
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.simulation import Measured, StepResult
 from stickslip_sim.simulation.encoder import Encoder, EncoderSettings
@@ -20,8 +19,9 @@ from tests.support.rigs import RATE, Script, inject, make, run
 MICRON = 1e-6
 
 
-def sample(position: float, velocity: float = 0.0) -> Sample:
-    return Sample(0.0, 0.0, Mode.STICK, 0, position, velocity, 0.0, 2 * position, 3.0, *(0.0,) * 6)
+def motion(position: float) -> tuple[float, float, float, float]:
+    """Return what encoders look at: the slider at rest, the drive at twice its position."""
+    return position, 0.0, 2 * position, 3.0
 
 
 def measured(steps: int = 900, script: Script | None = None, delay_steps: int = 0, seed: int = 0, **encoder: Any
@@ -37,7 +37,7 @@ def measured(steps: int = 900, script: Script | None = None, delay_steps: int = 
 class TestPosition:
     @given(st.floats(-10.0, 10.0), st.sampled_from([1e-3, MICRON, 7.3e-9, 0.25]), st.floats(-1.0, 1.0))
     def test_is_the_nearest_count(self, position: float, resolution: float, offset: float) -> None:
-        reading = Encoder(EncoderSettings(resolution, offset), RATE, 0, 0).measure(sample(position), {})
+        reading = Encoder(EncoderSettings(resolution, offset), RATE, 0, 0).measure(*motion(position))
         assert reading is not None
         for value, true in ((reading.slider_position, position), (reading.drive_position, 2 * position)):
             count = value / resolution
@@ -46,7 +46,7 @@ class TestPosition:
 
     @pytest.mark.parametrize(('position', 'count'), [(0.49, 0), (0.5, 1), (1.49, 1), (-0.5, 0), (-0.51, -1), (2.5, 3)])
     def test_halves_go_up_so_that_no_count_is_wider(self, position: float, count: int) -> None:
-        reading = Encoder(EncoderSettings(0.25), RATE, 0, 0).measure(sample(0.25 * position), {})
+        reading = Encoder(EncoderSettings(0.25), RATE, 0, 0).measure(*motion(0.25 * position))
         assert reading is not None
         assert reading.slider_position == 0.25 * count
 
@@ -89,7 +89,7 @@ class TestNoise:
 
     def readings(self, seed: int, **settings: Any) -> list[Measured]:
         encoder = Encoder(EncoderSettings(noise=MICRON, **settings), RATE, 0, seed)
-        found = [encoder.measure(sample(0.1), {}) for _ in range(self.COUNT)]
+        found = [encoder.measure(*motion(0.1)) for _ in range(self.COUNT)]
         return [reading for reading in found if reading]
 
     def test_is_normal(self) -> None:

@@ -65,6 +65,27 @@ class Layout:
         return np.frombuffer(b''.join(messages), self._dtype)
 
 
+class FixedLayout:
+    """A message with texts or lists, of which only the stamp and some numbers change: float64 at the `ends` in bytes.
+
+    The `pattern` is such a message; an end is counted from its own, as the texts come first.
+    """
+
+    def __init__(self, pattern: bytes, ends: Mapping[str, int]) -> None:
+        self.names, self.size, self._pattern = tuple(ends), len(pattern), pattern
+        self.places = {**_STAMP, **{name: ('<f8', len(pattern) - end) for name, end in ends.items()}}
+
+    def pack(self, _stamp_ns: int, *_numbers: float) -> bytes:
+        """Return the pattern, into which `MessageRows` puts stamps and numbers."""
+        return self._pattern
+
+    def unpack(self, messages: list[bytes]) -> NDArray[Any]:
+        """Return stamps and numbers of messages of this size as a structured array."""
+        kind = np.dtype({'names': list(self.places), 'formats': [kind for kind, _ in self.places.values()],
+                         'offsets': [place for _, place in self.places.values()], 'itemsize': self.size})
+        return np.frombuffer(b''.join(messages), kind)
+
+
 def layout_of(store: Typestore, type_name: str) -> Layout | None:
     """Return the layout of a type, None when its numbers have no fixed places."""
     fields = store.fielddefs[type_name][1]
@@ -118,7 +139,7 @@ def record_of(channel: int, sequence: int, log_time: int, publish_time: int, dat
 class MessageRows:
     """The rows of a channel whose messages have a layout."""
 
-    def __init__(self, channel: int, layout: Layout) -> None:
+    def __init__(self, channel: int, layout: Layout | FixedLayout) -> None:
         record = record_of(channel, 0, 0, 0, layout.pack(0, *[0] * len(layout.names)))
         self.names = layout.names
         self._kind, self._empty = row_kind(layout), np.frombuffer(record, np.uint8)
@@ -135,7 +156,7 @@ class MessageRows:
         return rows
 
 
-def row_kind(layout: Layout) -> np.dtype[Any]:
+def row_kind(layout: Layout | FixedLayout) -> np.dtype[Any]:
     """Return the type of a row: the record of a message with such a layout."""
     of_message = {name: (kind, place + FRAME_SIZE) for name, (kind, place) in layout.places.items()}
     places = {**FIELDS, **of_message}

@@ -24,6 +24,7 @@ from .observed_run import (
     commands_of,
     motion_blocks,
     observed_motion,
+    setpoint_of,
     states_of,
     timing_of,
     unmeasured,
@@ -260,7 +261,7 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, has_timing, commands)
     found = [_begun(limit, motion, commands, limits.needs_commands) for limit in limits.limits]
     open_ones = [one for one in found if isinstance(one, _Open)]
-    reference = limits.reference_at(commands.first if commands else None)
+    reference = limits.reference_at(commands.first if commands else None) or setpoint_of(run)
     for block in motion_blocks(states_of(run), motion.events, reference):
         for one in open_ones:
             one.take(block)

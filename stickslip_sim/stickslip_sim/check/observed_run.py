@@ -16,7 +16,7 @@ from ..core.types import Event, EventKind, Mode
 from ..recording import MeasuredRun, RecordedRun
 from ..recording.reader import EVENT_FIELDS
 from ..recording.run_outline import StatesSeen
-from ..runs import Run
+from ..runs import Run, SimulatedRun
 from ..runs.run import kept
 from ..runs.samples import gathered, joined
 
@@ -172,9 +172,18 @@ def timing_of(run: Run) -> Timing | None:
     return Timing(valid, one_line(str(timing.get('verdict', ''))))
 
 
+def setpoint_of(run: Run) -> Reference | None:
+    """Return the setpoint of a run as a reference; None without one."""
+    wanted = run.setpoint
+    return Reference(tuple(wanted['time'].tolist()), tuple(wanted['position'].tolist())) if wanted else None
+
+
 @kept
 def commands_of(run: Run) -> KnownCommands | None:
-    """Return what is known of the commands of a run that a node recorded; None of any other run."""
+    """Return what is known of the commands of a run that took some: a node's or a closed loop's; None of any other."""
+    if isinstance(run, SimulatedRun) and run.is_commanded:
+        ordered = run.commands['time']
+        return KnownCommands(float(ordered[0]) if len(ordered) else None)
     if not isinstance(run, RecordedRun) or run.bag.metadata.get(METADATA, {}).get('origin') != 'node':
         return None
     stamps = (block['log_time'] for _, block in run.bag.blocks_of({DRIVE_VELOCITY: ['log_time']}))

@@ -34,6 +34,11 @@ class Checked(NamedTuple):
     run: Run
     outcomes: Sequence[LimitOutcome]
 
+    @property
+    def passed(self) -> bool:
+        """Whether all limits were kept."""
+        return not failures(self.outcomes)
+
 
 def verdict_line(checked: Checked) -> str:
     """Return passed or failed, of how many, and which failed."""

@@ -20,7 +20,8 @@ from . import process
 from .completion import LazyGroup, complete_for_shell
 
 _SECTIONS = {   # each verb by what a reader wants, as in the help: its function, by its file
-    'Run': {'scenes': 'scenes.scenes', 'simulate': 'simulate.simulate', 'import': 'import_.import_',
+    'Run': {'scenes': 'scenes.scenes', 'simulate': 'simulate.simulate',
+            'close-loop': 'close_loop.close_loop', 'import': 'import_.import_',
             'call': 'call.call'},
     'Look': {'plot': 'plot.plot', 'compare': 'compare.compare', 'export': 'export.export'},
     'Check': {'check': 'check.check', 'verify': 'verify.verify'},

@@ -8,6 +8,7 @@
     ├── SolverError      the solver gave up
     │   └── UnsoundError what it found contradicts itself
     ├── RefusedError     a running node does not do what it is asked for
+    ├── ControllerError  a controller of the user raised, or answered what is no command
     └── VerdictError     what was checked did not pass
 
 Each carries one line of text for people and the exit code of the tool.
@@ -17,6 +18,7 @@ import difflib
 import os
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 LINE_LIMIT = 2000   # characters
 
@@ -69,6 +71,13 @@ class RefusedError(StickslipError):
     """A running node does not do what it is asked for, and says why."""
 
     exit_code = 2
+
+
+class ControllerError(StickslipError):
+    """A controller of the user raised, or answered what is no command; `run` is what was made before that, or None."""
+
+    exit_code = 2
+    run: Any = None
 
 
 class VerdictError(StickslipError):

@@ -97,8 +97,13 @@ class InputProfile:
 
     def pieces_at(self, time: float) -> tuple[float, float, float]:
         """Return what the pieces make at `time` >= 0 s: the value, its rate, and until when."""
-        if len(self.starts) == 1 and self.period == math.inf:
-            return self.values[0] + self.rates[0] * (time - self.starts[0]), self.rates[0], math.inf
+        if self.period == math.inf:
+            starts = self.starts
+            i = len(starts) - 1
+            if i and time < starts[i]:
+                i = max(bisect_right(starts, time) - 1, 0)
+            end = starts[i + 1] if i + 1 < len(starts) else math.inf
+            return self.values[i] + self.rates[i] * (time - starts[i]), self.rates[i], end
         piece = self.piece_at(time)
         return piece.value + piece.rate * (time - piece.start), piece.rate, piece.end
 
@@ -108,7 +113,8 @@ class InputProfile:
 
     def value_at(self, time: float) -> float:
         """Return the value at `time` >= 0 s."""
-        return self.pieces_at(time)[0] + sum(sinusoid.at(time) for sinusoid in self.sinusoids)
+        value = self.pieces_at(time)[0]
+        return value + (sum(sinusoid.at(time) for sinusoid in self.sinusoids) if self.sinusoids else 0.0)
 
     def values_at(self, times: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the values at times >= 0 s, each as `value_at` does but for the last bit of a sinusoid."""

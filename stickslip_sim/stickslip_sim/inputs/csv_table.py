@@ -192,6 +192,17 @@ class CsvTable:
                 yield number, text if self._mark == ',' else text.replace(',', '.')
 
 
+def heading_of(path: Path) -> list[str]:
+    """Return the names of the columns of a file, none of one that `CsvTable` refuses."""
+    try:
+        with path.open(encoding='utf-8-sig') as file:
+            line = next((text for text in file if text.partition('#')[0].strip()), '').partition('#')[0].strip()
+    except (OSError, ValueError):
+        return []
+    mark = next((mark for mark in ';\t,' if mark in line), None)
+    return [cell.strip().strip('"') for cell in line.split(mark)]
+
+
 def _read(option: str, path: Path) -> str:
     try:
         with path.open('rb') as file:

@@ -51,12 +51,16 @@ class TimeWindow(NamedTuple):
     end: float
 
 
+NO_SETPOINT: Mapping[str, Numbers] = {}
+
+
 class DrawnRun(NamedTuple):
     """A run as it is drawn, SI units; the first line of `title` is the heading.
 
     `motion`: columns of samples and of the states before events, in the order of time; `inputs`: `time`,
     `drive_velocity`, `external_force`, and `normal_force` where it varies; `commands`: `time` and `velocity` as they
-    were taken, both empty where none is known; `modes`: when each began, and which.
+    were taken, both empty where none is known; `modes`: when each began, and which; `setpoint`: `time` and `position`
+    of the slider, empty without one.
     """
 
     title: str
@@ -67,6 +71,7 @@ class DrawnRun(NamedTuple):
     break_aways: tuple[Numbers, Numbers]   # s, N: times and friction forces
     event_times: Numbers
     marks: Sequence[Mark]
+    setpoint: Mapping[str, Numbers] = NO_SETPOINT
 
 
 def drawn_run(title: str, samples: Mapping[str, Numbers], events: Sequence[Event], commands: Mapping[str, Numbers],
@@ -136,6 +141,9 @@ class WindowPanels:
         line(panel, self._motion, 'drive_position', MILLI, 'drive end of the spring', color=GREY, linewidth=1.0,
              linestyle=_DASHES)
         line(panel, self._motion, 'position', MILLI, 'slider', color=BLUE, linewidth=1.4)
+        if self._run.setpoint:
+            line(panel, _part(self._run.setpoint, self._window), 'position', MILLI, 'setpoint', color=BLACK,
+                 linewidth=0.9, linestyle=_DASHES)
         panel.set_ylabel('position / mm')
         _no_closer(panel, _CLOSEST_POSITION)
 
@@ -145,6 +153,13 @@ class WindowPanels:
         fine = float(np.abs(stretch[np.isfinite(stretch)]).max(initial=0.0)) < _FINE
         self._curve(panel, stretch * (_MICRO if fine else MILLI), 'drive end less slider', BLUE, 1.2)
         panel.set_ylabel(f'stretch / {"µm" if fine else "mm"}')
+        _no_closer(panel, _CLOSEST)
+
+    def error(self, panel: Axes) -> None:
+        """Draw the error of the position: the setpoint less the slider."""
+        wanted = np.interp(self._motion['time'], self._run.setpoint['time'], self._run.setpoint['position'])
+        self._curve(panel, (wanted - self._motion['position']) * _MICRO, 'setpoint less slider', RED, 1.2)
+        panel.set_ylabel('error / µm')
         _no_closer(panel, _CLOSEST)
 
     def velocity(self, panel: Axes) -> None:
@@ -358,6 +373,7 @@ def _panels_of_lines(run: DrawnRun) -> list[tuple[float, _Draw]]:
     """Return the height (in) of each panel in which a run has something, and what draws it."""
     known = {name for name, column in run.motion.items() if np.isfinite(column).any()}
     panels: list[tuple[float, _Draw]] = [(_TALL, WindowPanels.position)] if 'position' in known else []
+    panels += [(_STRETCH, WindowPanels.error)] if run.setpoint and 'position' in known else []
     panels += [(_STRETCH, WindowPanels.stretch)] if {'position', 'drive_position'} <= known else []
     panels += [(_TALL, WindowPanels.velocity)]
     has_force = {'drive_force', 'friction_force'} & known or np.isfinite(run.inputs['external_force']).any()

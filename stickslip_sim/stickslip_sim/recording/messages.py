@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bags.message_layout import Layout
-from ..bags.schemas import flat_layout
-from ..bags.topics import Topic
+from ..bags.message_layout import FixedLayout, Layout
+from ..bags.schemas import MessageCodec, flat_layout
+from ..bags.topics import SETPOINT, Topic
 from ..core.time_grid import NANOSECONDS
 from ..core.types import Event, Sample
 from ..core.version import __version__
+from ..simulation import Fault, RigEvent
 from .run import RunFacts
 
 Fields = dict[str, object]
@@ -46,6 +47,21 @@ class Packer:
         return self._layout.pack(stamp_ns, step, *self._numbers(output))
 
 
+def slider_joint(prefix: str) -> str:
+    """Return the joint of the slider of an axis."""
+    return f'{prefix}axis_slider'
+
+
+_ENDS = {'position': 28, 'velocity': 12}    # bytes from the end: each behind the length of its list, no effort
+
+
+def setpoint_layout(joint: str) -> FixedLayout:
+    """Return the layout of a setpoint: a JointState of this joint, with its position (m) and velocity (m/s)."""
+    one, none = np.zeros(1), np.zeros(0)
+    fields = {'header': header(0), 'name': [joint], 'position': one, 'velocity': one, 'effort': none}
+    return FixedLayout(MessageCodec([SETPOINT.type]).encode(SETPOINT.type, fields), _ENDS)
+
+
 def time_message(nanoseconds: int) -> Fields:
     """Return the fields of builtin_interfaces/Time."""
     sec, nanosec = divmod(nanoseconds, NANOSECONDS)
@@ -55,6 +71,16 @@ def time_message(nanoseconds: int) -> Fields:
 def header(stamp_ns: int, frame: str = '') -> Fields:
     """Return the fields of std_msgs/Header."""
     return {'stamp': time_message(stamp_ns), 'frame_id': frame}
+
+
+def rig_event(step: int, time_ns: int, stamp_ns: int, event: RigEvent) -> Fields:
+    """Return the fields of RigEvent of what holds from the start of a step, at that simulation time."""
+    fault = event.fault or Fault('', '', 0.0, 0.0, 0.0)
+    return {
+        'header': header(stamp_ns), 'step': step, 'time': time_ns * 1e-9, 'kind': int(event.kind), 'id': event.id,
+        'fault': fault.kind, 'start': fault.start, 'duration': fault.duration, 'value': event.value,
+        'count': event.number, 'text': event.text,
+    }
 
 
 def run_info(facts: RunFacts, stamp_ns: int, start_ns: int, bag_path: str) -> Fields:

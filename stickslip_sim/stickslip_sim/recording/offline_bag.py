@@ -3,7 +3,7 @@
 """Writes the bag of an offline run: topics, fields and conventions of the node's, stamps are simulation time."""
 
 import shutil
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
@@ -23,8 +23,9 @@ from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Mode, Sample
 from ..runs import SimulatedRun, simulate
 from ..runs.simulated import columns_of_rows
+from ..simulation import RigEvent
 from . import messages
-from .messages import Packer, numbers_of_steps
+from .messages import Packer, numbers_of_steps, setpoint_layout
 from .run import RunFacts, open_run, receipt_file
 
 CHANNELS = {topic: number for number, topic in enumerate(topics.RECORDED, 1)}
@@ -69,6 +70,30 @@ def write_run(folder: Path | str, run: SimulatedRun) -> None:
         raise
 
 
+def write_steps(folder: Path | str, facts: RunFacts, samples: Columns, orders: 'Orders', receipt: Mapping[str, object],
+                setpoint: Columns, joint: str) -> None:
+    """Write the steps of a rig that took orders as a node records them, samples from step 0 on.
+
+    A `setpoint` for the `joint` of the slider is written too, if there is one.  A bag that was begun vanishes on any
+    error.  Raises RecordingError.
+    """
+    bag, steps = OfflineBag(folder, facts, [topics.SETPOINT] if setpoint else []), StepMessages(joint)
+    try:
+        others = steps.of_orders(orders, Instants(samples['second'], samples['fraction']).nanoseconds())
+        for first in range(0, len(samples['time']), _BLOCK):
+            part, wanted = ({name: column[first:first + _BLOCK] for name, column in columns.items()}
+                            for columns in (samples, setpoint))
+            count = bisect_left(others, first + _BLOCK, key=lambda other: other.place)
+            due, others = others[:count], others[count:]
+            bag.write(steps.around(first, part, [other._replace(place=other.place - first) for other in due]
+                                   if first else due, wanted))
+        bag.close(receipt)
+    except BaseException:
+        bag.abandon()
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
 def message_blocks(blocks: Iterable[Columns], events: Iterable[Event]) -> Iterator[MessageBlock]:
     """Yield the messages of a run that was sampled at each step: all that its bag holds behind the first."""
     steps = StepMessages()
@@ -96,11 +121,23 @@ class _Other(NamedTuple):
     record: bytes
 
 
+class Orders(NamedTuple):
+    """What came to the rig of a run and what happened in it, each with its step; velocities in m/s, forces in N."""
+
+    commands: Sequence[tuple[int, float | None, float | None]] = ()
+    events: Sequence[tuple[int, Event]] = ()
+    rig_events: Sequence[tuple[int, RigEvent]] = ()
+
+
+NO_ORDERS = Orders()
+
+
 class OfflineBag:
     """A bag to which an offline run gives its messages."""
 
-    def __init__(self, folder: Path | str, facts: RunFacts) -> None:
-        self._writer = open_run(folder, facts)
+    def __init__(self, folder: Path | str, facts: RunFacts, more: Sequence[Topic] = ()) -> None:
+        resolved = [topic.resolved() for topic in more]
+        self._writer = open_run(folder, facts, [*topics.recorded_topics(), *resolved] if more else ())
         info = messages.run_info(facts, 0, 0, str(self._writer.folder))
         data = MessageCodec([topics.RUN_INFO.type]).encode(topics.RUN_INFO.type, info)
         self._writer.write(CHANNELS[topics.RUN_INFO] - 1, data, 0, 0, 0)
@@ -120,9 +157,10 @@ class OfflineBag:
 
 
 class StepMessages:
-    """Makes the messages of steps, block by block."""
+    """Makes the messages of steps, block by block; the `joint` is that of a setpoint."""
 
-    def __init__(self) -> None:
+    def __init__(self, joint: str = '') -> None:
+        self._setpoint = MessageRows(len(CHANNELS) + 1, setpoint_layout(joint)) if joint else None
         self._rows = [MessageRows(CHANNELS[topic], flat_layout(topic.type))
                       for topic in (topics.SLIDER_STATE, topics.FRICTION_FORCE)]
         self._event = Packer(topics.MODE_EVENT)
@@ -134,12 +172,39 @@ class StepMessages:
         A command is that of the next step.
         """
         at = Instants(samples['second'], samples['fraction'])
-        times = at.nanoseconds()
+        others = [*self._commands(first, samples, at.nanoseconds()), *self._events(first, at, events)]
+        others.sort(key=lambda other: other.place)
+        return self.around(first, samples, others)
+
+    def around(self, first: int, samples: Columns, others: Sequence[_Other], setpoint: Columns | None = None
+               ) -> MessageBlock:
+        """Return the states at the ends of steps from `first` on, and the setpoint, with other messages in front."""
+        times = Instants(samples['second'], samples['fraction']).nanoseconds()
         steps = np.arange(first, first + len(times))
         rows = [of.packed(times, times, steps, numbers_of_steps(of.names, steps, samples)) for of in self._rows]
-        others = [*self._commands(first, samples, times), *self._events(first, at, events)]
-        others.sort(key=lambda other: other.place)
+        if self._setpoint and setpoint:
+            rows.append(self._setpoint.packed(times, times, steps, setpoint))
         return interleaved(rows, times, others)
+
+    def of_orders(self, orders: Orders, times: NDArray[np.int64]) -> list[_Other]:
+        """Return the messages of orders in front of their steps, in the order of a node; `times` of steps in ns."""
+        codec, begins = MessageCodec([topics.RIG_EVENT.type]), [0, *times.tolist()]
+        found = []
+        for step, rig_event in orders.rig_events:
+            fields = messages.rig_event(step, begins[step], begins[step], rig_event)
+            data = codec.encode(topics.RIG_EVENT.type, fields)
+            found.append(self._other(topics.RIG_EVENT, step, begins[step], step, data))
+        velocities = [(step, velocity) for step, velocity, _ in orders.commands]
+        forces = [(step, force) for step, _, force in orders.commands]
+        for topic, values in ((topics.DRIVE_VELOCITY, velocities), (topics.EXTERNAL_FORCE, forces)):
+            pack = flat_layout(topic.type).pack
+            found += [self._other(topic, step, begins[step], step, pack(begins[step], value))
+                      for step, value in values if value is not None]
+        for step, event in orders.events:
+            if event.kind != EventKind.KNOT:
+                time, number = event.instant.nanoseconds, max(step, 1)
+                found.append(self._other(topics.MODE_EVENT, step, time, number, self._event.pack(time, number, event)))
+        return sorted(found, key=lambda other: other.place)
 
     def _events(self, first: int, at: Instants, events: Sequence[Event]) -> Iterator[_Other]:
         """Yield the transitions; each belongs to the step that it fell into, counted from 1."""

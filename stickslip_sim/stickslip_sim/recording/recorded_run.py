@@ -16,6 +16,7 @@ from ..bags.topics import (
     MODE_EVENT,
     PARAMETER_EVENTS,
     RIG_EVENT,
+    SETPOINT,
     SLIDER_STATE,
     TIMING,
     Topic,
@@ -30,6 +31,7 @@ from ..runs.samples import MOST_HELD, joined
 from ..scene import Scene
 from ..simulation import RigEventKind
 from ..simulation.step_result import Mark, TimedRigEvent, marks_of_events, marks_of_faults
+from .messages import setpoint_layout, slider_joint
 from .reader import EVENT_FIELDS, Bag
 from .run_outline import (
     LATE_FIELDS,
@@ -215,6 +217,21 @@ class RecordedRun(Views):
         for _, block in self.bag.blocks_of({DRIVE_VELOCITY: ('sequence', 'velocity')}):
             times = np.maximum(block['sequence'].astype(np.float64) - 1.0, 0.0) / self.scene.time.rate
             yield {'time': times, 'velocity': block['velocity'].astype(np.float64)}
+
+    @cached_property
+    def setpoint(self) -> Columns:
+        """Where the slider should have been, of a closed loop that recorded it; messages of others are passed over."""
+        found = [name for name, kind in self.bag.topics.items()
+                 if kind == SETPOINT.type and name.rpartition('/')[2] == SETPOINT.name]
+        if len(found) != 1:
+            return {}
+        layout = setpoint_layout(slider_joint(self.scene.joint_prefix))
+        messages = [message for message in self.bag.messages(found) if len(message.data) == layout.size]
+        if not messages:
+            return {}
+        rows = layout.unpack([message.data for message in messages])
+        return {'time': np.array([message.log_time for message in messages]) / 1e9,
+                **{name: rows[name].astype(np.float64) for name in layout.names}}
 
     @cached_property
     def marks(self) -> list[Mark]:

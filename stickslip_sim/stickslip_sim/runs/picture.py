@@ -93,7 +93,10 @@ def draw_run(run: Run, window: tuple[float, float] | None, *paths: Path | str) -
     windows = windows_of(run, window, commands_at)
     samples = _samples_for(run, windows)
     commands = reduced(run.command_blocks(), windows, ['velocity'])
-    plot_run(drawn_run(_title(run), samples, run.events, commands, run.marks), windows, *paths)
+    drawn = drawn_run(_title(run), samples, run.events, commands, run.marks)
+    if run.setpoint:
+        drawn = drawn._replace(setpoint=reduced([run.setpoint], windows, ['position']))
+    plot_run(drawn, windows, *paths)
 
 
 def first_command(run: Run) -> float | None:

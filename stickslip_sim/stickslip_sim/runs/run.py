@@ -72,6 +72,10 @@ class Run(Protocol):
         """The drive velocities that were taken: `time` and `velocity`, m/s; empty where the scene alone decides."""
 
     @property
+    def setpoint(self) -> Columns:
+        """Where the slider should have been: `time`, `position` (m), `velocity` (m/s); empty where none was given."""
+
+    @property
     def marks(self) -> list[Mark]:
         """When faults were in force, and commands refused, limited, lost or missing."""
 

@@ -98,7 +98,9 @@ class SimulatedRun(Views):
     receipt: dict[str, Any] = field(default_factory=dict)
     begin: float = 0.0
     notes: tuple[str, ...] = ()
+    setpoint: Columns = field(default_factory=dict)
     is_recorded: ClassVar[bool] = False
+    is_commanded: ClassVar[bool] = False
     is_complete: ClassVar[bool] = True
     is_changed: ClassVar[bool] = False
     missing_steps: ClassVar[int] = 0
@@ -146,7 +148,6 @@ class SimulatedRun(Views):
         for block in self.sample_blocks():
             for second, fraction, mode, direction, *rest in zip(*(block[name].tolist() for name in Sample._fields)):
                 yield Sample(second, fraction, Mode(int(mode)), int(direction), *rest)
-
 
 
 def simulate(scene: Scene, duration: float, sample_period: float | Fraction | None = None,

@@ -123,7 +123,7 @@ def check_scaled_friction(axis: Axis, solver: SolverSettings, rig: RigSettings, 
     plan = Faults(Grid(rate), rig.faults)
     while plan.next_change < math.inf:
         plan.enter(int(plan.next_change))
-        scale = math.prod(plan.values('friction_scale'))
+        scale = plan.effect.friction_scale
         try:
             solver.check(with_friction_scaled(axis, scale))
         except InputError as error:

@@ -7,14 +7,13 @@ Its profile is made of constants and ramps, so that the motion of the axis stays
 
 import math
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from ..core.input_profile import Input, InputProfile, plain_of, profile_of
-from ..core.time_grid import Grid
 from ..core.types import Instant
-from .faults import Fault
+from .faults import Effect
 from .random_stream import Stream, restore, state_of, stream
 
 
@@ -53,7 +52,8 @@ class Drive:
         """
         limits = self._limits
         is_within = -limits.velocity <= velocity <= limits.velocity
-        is_followed = is_within and (self._frozen or abs(velocity - self._at(now)) <= self._within_reach)
+        is_followed = is_within and (self._within_reach == math.inf or self._frozen
+                                     or abs(velocity - self._at(now)) <= self._within_reach)
         target = velocity if is_within else math.copysign(limits.velocity, velocity)
         acceleration = min(acceleration, limits.acceleration)
         if target != self._target or acceleration != self._acceleration:
@@ -107,21 +107,15 @@ def _ramp(start: float, target: float, now: Instant, acceleration: float) -> Inp
 class CommandChannel:
     """Takes commands in and lets them out, before the same step without a fault."""
 
-    def __init__(self, grid: Grid, seed: int) -> None:
-        self._grid = grid
+    def __init__(self, seed: int) -> None:
         self._stream = stream(seed, Stream.LOSS)
         self.under_way: deque[tuple[int, float]] = deque()    # step of arrival, velocity
 
-    def put(self, velocity: float, step: int, faults: Mapping[str, Fault]) -> bool:
+    def put(self, velocity: float, step: int, effect: Effect) -> bool:
         """Send a command before a step; return whether it gets through.  Those that it overtakes never arrive."""
-        arrival, kept = step, 1.0
-        for fault in faults.values():
-            if fault.kind == 'command_delay':
-                arrival += self._grid.steps(fault.value)
-            elif fault.kind == 'command_loss':
-                kept *= 1.0 - fault.value
-        if kept < 1.0 and self._stream.random_sample() >= kept:
+        if effect.command_kept < 1.0 and self._stream.random_sample() >= effect.command_kept:
             return False
+        arrival = step + effect.command_delay
         while self.under_way and self.under_way[-1][0] >= arrival:
             self.under_way.pop()
         self.under_way.append((arrival, velocity))

@@ -8,14 +8,14 @@ velocity(n) = (measured(n) − measured(n − k)) · rate / k, k = `velocity_ste
 
 import math
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from ..core.types import Sample
-from .faults import Fault
+from ..core.types import tuple_of
+from .faults import NO_EFFECT, Effect
 from .random_stream import Stream, stream
 
 _BLOCK = 1024   # random numbers drawn at a time
@@ -47,7 +47,7 @@ class Measured(NamedTuple):
 
 
 class Encoder:
-    """Measures both positions once a step; faults are those in force, and befall the slider's encoder."""
+    """Measures both positions once a step; the faults in force befall the slider's encoder."""
 
     def __init__(self, settings: EncoderSettings, rate: float, delay_steps: int, seed: int) -> None:
         def channel(noise: Stream) -> _Ideal | _Sampled:
@@ -58,20 +58,14 @@ class Encoder:
         self._slider, self._drive = channel(Stream.SLIDER_NOISE), channel(Stream.DRIVE_NOISE)
         self._dropout = stream(seed, Stream.DROPOUT)
 
-    def measure(self, sample: Sample, faults: Mapping[str, Fault]) -> Measured | None:
+    def measure(self, position: float, velocity: float, drive_position: float, drive_velocity: float,
+                effect: Effect = NO_EFFECT) -> Measured | None:
         """Return the measurement at the end of a step, None when it is lost."""
-        shift, is_frozen, kept = 0.0, False, 1.0
-        for fault in faults.values():
-            if fault.kind == 'encoder_step':
-                shift += fault.value
-            elif fault.kind == 'encoder_freeze':
-                is_frozen = True
-            elif fault.kind == 'encoder_dropout':
-                kept *= 1.0 - fault.value
-        measured = Measured(*self._slider.read(sample.position, sample.velocity, shift, is_frozen),
-                            *self._drive.read(sample.drive_position, sample.drive_velocity))
-        is_lost = kept < 1.0 and self._dropout.random_sample() >= kept
-        return None if is_lost else measured
+        slider = self._slider.read(position, velocity, effect.encoder_step, effect.encoder_frozen)
+        measured = slider + self._drive.read(drive_position, drive_velocity)
+        if effect.encoder_kept < 1.0 and self._dropout.random_sample() >= effect.encoder_kept:
+            return None
+        return tuple_of(Measured, measured)
 
 
 class _Ideal:

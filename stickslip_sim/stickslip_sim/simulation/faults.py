@@ -70,6 +70,22 @@ def check_fault(fault: Fault, period: float) -> None:
         raise InputError('value', fault.value, f'with {fault.kind}: {rule.allowed}', 'give a value in this range')
 
 
+class Effect(NamedTuple):
+    """What the faults in force do together: factor, N, m, shares that get through, steps, and what is frozen."""
+
+    friction_scale: float = 1.0
+    force_pulse: float = 0.0
+    encoder_step: float = 0.0
+    encoder_kept: float = 1.0
+    encoder_frozen: bool = False
+    command_kept: float = 1.0
+    command_delay: int = 0
+    drive_frozen: bool = False
+
+
+NO_EFFECT = Effect()
+
+
 class _Planned(NamedTuple):
     first: int           # step
     end: float           # first step without it; inf for none
@@ -77,10 +93,11 @@ class _Planned(NamedTuple):
 
 
 class Faults:
-    """The faults of a run: `active` by id, in the order in which they began."""
+    """The faults of a run: `active` by id, in the order in which they began, and their `effect`."""
 
     def __init__(self, grid: Grid, planned: Sequence[Fault]) -> None:
         self.active: dict[str, Fault] = {}
+        self.effect = NO_EFFECT
         self._grid = grid
         self._planned: list[_Planned] = []
         self._ends: dict[str, float] = {}
@@ -94,10 +111,6 @@ class Faults:
         """The ids in use."""
         return [*self.active, *(planned.fault.id for planned in self._planned)]
 
-    def values(self, kind: str) -> list[float]:
-        """Return the values of the faults of a kind that are in force."""
-        return [fault.value for fault in self.active.values() if fault.kind == kind]
-
     def inject(self, fault: Fault, step: int) -> Fault:
         """Plan a fault whose start counts from the start of a step; return it with its id.  Raises InputError."""
         fault = fault if fault.id else fault._replace(id=self._free_id(fault.kind))
@@ -110,7 +123,7 @@ class Faults:
         lasts = math.inf if fault.duration == math.inf else self._grid.steps(fault.duration)
         self._planned.append(_Planned(first, first + lasts, fault))
         self._planned.sort(key=lambda planned: planned.first)
-        self._look_ahead()
+        self._changed()
         return fault
 
     def clear(self, fault_id: str) -> Fault:
@@ -124,7 +137,7 @@ class Faults:
                 fault = planned.fault
         self._planned = [planned for planned in self._planned if planned.fault.id != fault_id]
         self._ends.pop(fault_id, None)
-        self._look_ahead()
+        self._changed()
         assert fault is not None
         return fault
 
@@ -138,7 +151,7 @@ class Faults:
         for planned in begun:
             self.active[planned.fault.id] = planned.fault
             self._ends[planned.fault.id] = planned.end
-        self._look_ahead()
+        self._changed()
         return ended, [planned.fault for planned in begun]
 
     def checkpoint(self) -> dict[str, Any]:
@@ -155,7 +168,7 @@ class Faults:
         self._planned = [_Planned(int(first), float(end), self._checked(fault))
                          for first, end, fault in saved['planned']]
         self._chosen = int(saved['chosen'])
-        self._look_ahead()
+        self._changed()
 
     def _checked(self, saved: Sequence[Any]) -> Fault:
         name, kind, *numbers = saved
@@ -163,9 +176,26 @@ class Faults:
         check_fault(fault, 1.0 / self._grid.rate)
         return fault
 
-    def _look_ahead(self) -> None:
+    def _changed(self) -> None:
+        """Look what is in force now, and when that changes."""
+        self.effect = self._effect() if self.active else NO_EFFECT
         self.next_change = min([*self._ends.values(), *(planned.first for planned in self._planned[:1])],
                                default=math.inf)
+
+    def _effect(self) -> Effect:
+        def values(kind: str) -> list[float]:
+            return [fault.value for fault in self.active.values() if fault.kind == kind]
+
+        def kept(kind: str) -> float:
+            return math.prod((1.0 - lost for lost in values(kind)), start=1.0)
+
+        step = 0.0
+        for value in values('encoder_step'):    # `sum` rounds otherwise from Python 3.12 on
+            step += value
+        return Effect(math.prod(values('friction_scale')), math.fsum(values('force_pulse')), step,
+                      kept('encoder_dropout'), bool(values('encoder_freeze')),
+                      kept('command_loss'), sum(map(self._grid.steps, values('command_delay'))),
+                      bool(values('drive_freeze')))
 
     def _free_id(self, kind: str) -> str:
         while True:

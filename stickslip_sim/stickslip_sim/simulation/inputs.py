@@ -51,9 +51,11 @@ class Inputs:
 
     def enter(self, time: float) -> tuple[float, float, float, float]:
         """Return drive velocity, its rate, force and its rate from a time on, s, up to where their pieces end."""
-        v, v_rate, v_end = _pieces_at(self.drive, time)
-        f, f_rate, f_end = _pieces_at(self.force, time)
-        self.go_on(v_end if v_end <= f_end else f_end)
+        drive, force = self.drive, self.force
+        v, v_rate, v_end = (drive + 0.0, 0.0, math.inf) if type(drive) is float else _pieces_at(drive, time)
+        f, f_rate, f_end = _pieces_at(force, time)
+        self.are_commanded = False
+        self.until = v_end if v_end <= f_end else f_end
         return v, v_rate, f, f_rate
 
     def pieces(self, make: Callable[[InputProfile], Any]) -> tuple[Any, Any]:

@@ -69,13 +69,14 @@ class Plant:
 
     def act(self) -> None:
         """Let all that changed take effect at once; raises SolverError when the faults leave no axis to go on with."""
-        scale = math.prod(self._faults.values('friction_scale'))
+        effect = self._faults.effect
+        scale = effect.friction_scale
         is_other = self._axis is not self._entered or scale != self._friction_scale
         falls, self._friction_scale, self._entered = scale < self._friction_scale, scale, self._axis
-        self._drive.freeze(bool(self._faults.values('drive_freeze')), self._simulator.time)
+        self._drive.freeze(effect.drive_frozen, self._simulator.time)
         if is_other and not falls:
             self._change_axis(scale)
-        self._set_inputs()
+        self._set_inputs(effect.force_pulse)
         if falls:    # last: what held before and holds afterwards must not break away in between
             self._change_axis(scale)
         self.is_changed = False
@@ -102,10 +103,12 @@ class Plant:
         except InputError as error:
             raise SolverError(f'the faults in force scale friction by {friction_scale:g}: {error}') from None
 
-    def _set_inputs(self) -> None:
-        pulse = math.fsum(self._faults.values('force_pulse')) if self._faults.active else 0.0
-        ordered = self._drive.profile, self._force.plus(pulse) if pulse else self._force
-        acting = self._simulator.drive, self._simulator.force
-        if ordered != acting:
-            drive, force = (old if new == old else new for new, old in zip(ordered, acting))
-            self._simulator.set_inputs(drive, force)
+    def _set_inputs(self, pulse: float) -> None:
+        simulator = self._simulator
+        drive, force = self._drive.profile, self._force.plus(pulse) if pulse else self._force
+        old_drive, old_force = simulator.drive, simulator.force
+        force = old_force if force is old_force or force == old_force else force
+        if drive != old_drive:
+            simulator.set_inputs(drive, force)
+        elif force is not old_force:
+            simulator.set_inputs(old_drive, force)

@@ -14,14 +14,14 @@ from ..axis import Axis, InitialState
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Grid, Instants
-from ..core.types import Event, Instant, tuple_of
+from ..core.types import Event, Instant, Sample, tuple_of
 from ..solvers import Solver
 from .drive import CommandChannel, Drive, DriveLimits
-from .encoder import Encoder, EncoderSettings
-from .faults import Fault, Faults
+from .encoder import Encoder, EncoderSettings, Measured
+from .faults import NO_EFFECT, Fault, Faults
 from .plant import Plant
 from .simulator import Simulator
-from .solved_axis import SolverOf
+from .solved_axis import SolverOf, sample_of
 from .step_result import Counts, RigEvent, RigEventKind, StepResult
 
 # What a scene says of the rig.
@@ -38,6 +38,11 @@ class RigSettings:
     on_timeout: str = 'hold'
     timeout_deceleration: float = 1.0
     faults: tuple[Fault, ...] = ()
+
+
+# What comes of a step, as numbers: a sample, a measurement, events at their times and at the start of the step.
+StepRow = tuple[list[float], Measured | None, list[Event], list[RigEvent]]
+_X, _V, _S, _DRIVE = map(Sample._fields.index, ('position', 'velocity', 'drive_position', 'drive_velocity'))
 
 
 class Rig:
@@ -69,7 +74,7 @@ class Rig:
         self.counts = Counts()
         self.has_failed = False               # on_timeout: fault; until cleared
         self._faults = Faults(self._grid, settings.faults)
-        self._channel = CommandChannel(self._grid, settings.seed)
+        self._channel = CommandChannel(settings.seed)
         self._plant = Plant(self.simulator, Drive(drive, settings.limits, 1.0 / self._grid.rate),
                             force, self._faults)
         self._encoder = Encoder(settings.encoder, self._grid.rate, settings.encoder_delay_steps, settings.seed)
@@ -167,26 +172,31 @@ class Rig:
 
         Raises SolverError, and InputError on a command that is not finite: then nothing has happened.
         """
+        row, measured, events, rig_events = self.make_row(velocity, force)
+        return tuple_of(StepResult, (self.step, velocity, force, rig_events, events, sample_of(row), measured))
+
+    def make_row(self, velocity: float | None, force: float | None) -> StepRow:
+        """Make the next step as `make_step` does; the numbers of its sample are a list."""
         if velocity is not None and not isfinite(velocity):
             raise _not_finite('velocity', velocity, 'm/s')
         if force is not None and not isfinite(force):
             raise _not_finite('force', force, 'N')
-        step = self.step + 1
-        if step >= self._faults.next_change and step > 0:
+        step, faults, plant, simulator = self.step + 1, self._faults, self._plant, self.simulator
+        if step >= faults.next_change and step > 0:
             self._enter_faults(step)
         if velocity is not None or self._channel.under_way:
             self._command_drive(velocity, step)
         if force is not None:
-            self._plant.push(force)
-        if self._plant.is_changed:
-            self._plant.act()
+            plant.push(force)
+        if plant.is_changed:
+            plant.act()
         rig_events, self._rig_events = self._rig_events, []
-        simulator = self.simulator
         events = simulator.advance(self._grid.instant(step))
-        sample = simulator.sample()
+        row = simulator.sample_row()
         self.step = step
-        measured = self._encoder.measure(sample, self._faults.active) if self._measures else None
-        return tuple_of(StepResult, (step, velocity, force, rig_events, events, sample, measured))
+        measured = (self._encoder.measure(row[_X], row[_V], row[_S], row[_DRIVE], faults.effect) if self._measures
+                    else None)
+        return row, measured, events, rig_events
 
     def advance(self, to: Instant) -> list[Event]:
         """Bring the axis to any time, through the faults of the scene; for runs without steps.  Returns its events."""
@@ -224,32 +234,30 @@ class Rig:
         return events
 
     def _command_drive(self, sent: float | None, step: int) -> None:
-        velocity = self._through_channel(sent, step)
+        channel, effect = self._channel, self._faults.effect
+        velocity = sent
+        if effect is not NO_EFFECT or channel.under_way:
+            if sent is not None and not channel.put(sent, step, effect):
+                self.counts.lost += 1
+                self._rig_events.append(RigEvent(RigEventKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
+            velocity = channel.take(step)
         if velocity is None:
             return
+        counts = self.counts
         if self.has_failed:
-            self.counts.refused += 1
+            counts.refused += 1
             return
-        self.counts.heard += 1
+        counts.heard += 1
         if self.is_silent:
             self.is_silent = False
             self._rig_events.append(RigEvent(RigEventKind.COMMAND_RESUMED, 'velocity', 'drive velocities come again',
                                              velocity))
         was_limited, self._is_limited = self._is_limited, not self._plant.follow(velocity)
-        self.counts.limited += self._is_limited
-        if self._is_limited and not was_limited:
-            self._rig_events.append(RigEvent(RigEventKind.COMMAND_LIMITED, 'velocity',
-                                             'beyond the limits of the drive, which follows within them', velocity))
-
-    def _through_channel(self, sent: float | None, step: int) -> float | None:
-        """Return the velocity that reaches the drive before a step; without a fault the one that was sent."""
-        channel, faults = self._channel, self._faults.active
-        if not (faults or channel.under_way):
-            return sent
-        if sent is not None and not channel.put(sent, step, faults):
-            self.counts.lost += 1
-            self._rig_events.append(RigEvent(RigEventKind.COMMAND_LOST, 'velocity', 'a fault ate a command', sent))
-        return channel.take(step)
+        if self._is_limited:
+            counts.limited += 1
+            if not was_limited:
+                self._rig_events.append(RigEvent(RigEventKind.COMMAND_LIMITED, 'velocity',
+                                                 'beyond the limits of the drive, which follows within them', velocity))
 
     def _enter_faults(self, step: int) -> None:
         ended, begun = self._faults.enter(step)

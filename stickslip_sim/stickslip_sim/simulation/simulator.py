@@ -154,6 +154,12 @@ class Simulator:
             self._solved.obey(self._waiting)
         return self._solved.sample()
 
+    def sample_row(self) -> list[float]:
+        """Return the numbers of `sample`, in its order."""
+        if self._inputs.are_commanded:
+            self._solved.obey(self._waiting)
+        return self._solved.row()
+
     def checkpoint(self) -> dict[str, Any]:
         """Return the state as plain data, from which a simulator of the same scene goes on to the last bit."""
         if self._inputs.are_commanded:

@@ -56,6 +56,12 @@ MAX_EVENTS_AT_ONCE = 100_000
 _AT_ONCE = 0.01                  # s, in which so many events are more than any axis has
 
 
+def sample_of(row: list[float]) -> Sample:
+    """Return the sample with these numbers."""
+    second, fraction, mode, direction, *rest = row
+    return tuple_of(Sample, (second, fraction, _MODES[int(mode)], int(direction), *rest))
+
+
 class _Crowd:
     """The events of a call since its time last went on, and the time of the first."""
 
@@ -143,7 +149,7 @@ class SolvedAxis:
     def advance(self, to: Instant, events: list[Event] | None) -> None:
         """Bring the state to a time under the inputs that were entered."""
         second, fraction = to
-        crowd = _Crowd(self.time)
+        crowd = None
         while True:
             rows, end = self._solver.advance(self._parameters, self._state, second, fraction, self._table, 0)
             if rows and events is not None:
@@ -151,6 +157,7 @@ class SolvedAxis:
             if end == DONE:
                 self.time = to
                 return
+            crowd = crowd or _Crowd(self.time)
             self._check_end(end, rows, crowd)
 
     def enter_pieces(self, time: float, events: list[Event]) -> None:
@@ -185,13 +192,16 @@ class SolvedAxis:
 
     def sample(self) -> Sample:
         """Return the state at the present time; raises SolverError when it is not finite."""
+        return sample_of(self.row())
+
+    def row(self) -> list[float]:
+        """Return the numbers of `sample`."""
         second, fraction = self.time
         self._solver.sample(self._parameters, self._state, second, fraction, self._row)
-        row = self._row.tolist()
+        row: list[float] = self._row.tolist()
         if not math.isfinite(sum(row)) and not all(map(math.isfinite, row[_MOVES])):
             raise self._out_of_range(second + fraction)
-        row[2], row[3] = _MODES[int(row[2])], int(row[3])
-        return tuple_of(Sample, row)
+        return row
 
     def numbers(self) -> list[float]:
         """Return all numbers of the state."""

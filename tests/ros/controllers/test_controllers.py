@@ -18,7 +18,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from benchmarks.closed_loop import close_loop
-from benchmarks.controllers import AXIS, controllers
+from benchmarks.controllers import controllers
 from stickslip_msgs.srv import Step
 from stickslip_sim.controllers import Moves
 from stickslip_sim.core.errors import InputError
@@ -119,7 +119,7 @@ class LockStep:
 @pytest.mark.parametrize('kind', NAMES)
 def test_in_lock_step_it_is_the_loop_of_the_benchmark_to_the_last_bit(kind: str) -> None:
     steps = 400
-    offline = close_loop(AXIS, controllers()[kind], Moves(), 0.001 * (steps + 1))
+    offline = close_loop(controllers()[kind], Moves(), 0.001 * (steps + 1))
     arguments = ['-r', 'joint_commands:=answers', 'use_sim_time:=true']
     with running(*BENCH, 'time.mode:=lockstep'), client() as axis, \
             running(*arguments, program=NAMES[kind], afresh=True) as controller:

@@ -1,0 +1,8 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""A controller of the user in a loop with the rig of a scene, in process: the same bits as in lock-step over ROS."""
+
+from .loop import close_loop
+from .run import ClosedLoopRun
+
+__all__ = ['ClosedLoopRun', 'close_loop']

@@ -1,0 +1,132 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The loop itself: step, measure, ask, command; as a node in lock-step does it, but without a node."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from struct import Struct
+from typing import Any
+
+from ..controllers.own_controller import Measurement, OwnController
+from ..core.errors import ControllerError, InputError, SolverError
+from ..core.time_grid import Instants, decimal, instants
+from ..core.types import Progress, Sample, tuple_of
+from ..inputs import SceneOrName, scene_of
+from ..realtime.commands import Watchdog
+from ..runs.samples import MOST_IN_MEMORY
+from ..runs.simulated import CostMeter, check_run_times
+from ..scene import Scene, scene_from_values
+from ..simulation import Measured
+from .run import ClosedLoopRun, LoopRecord
+from .setpoint import Given, as_setpoints, setpoints_at
+
+_REPORTED_EVERY = 1000   # steps
+_DRIVE_FORCE = Sample._fields.index('drive_force')
+_ROW = Struct(f'{len(Sample._fields)}d')
+
+
+def close_loop(controller: Callable[[float, Measurement], Any], scene: SceneOrName, duration: float,
+               rate: float | None = None, setpoint: Given | None = None, progress: Progress = None) -> ClosedLoopRun:
+    """Let a controller drive the axis of a scene, with its rig, for `duration` s; return the run.
+
+    `controller(t, measured)` is asked after each step, or `rate` times a second, with the time (s) and a measurement.
+    Its answer, a velocity of the drive (m/s) or a Command, holds from the next step on; a further delay is the scene's.
+    An optional `controller.reset()` is called first.  `setpoint` is a function of time that returns a position (m) or
+    position and velocity, Moves, arrays (times, positions) or a CSV file with the columns time and position.
+
+    The encoders are read, and time moves in lock-step, whatever the scene says.  Raises ControllerError on a controller
+    that raises or answers what is no command, SolverError when the solver gives up: `error.run` is what was made until
+    then.  Raises InputError on all else that is wrong.
+    """
+    scene = measured_scene(scene_of(scene))
+    check_run_times(duration, None)
+    count = int(decimal(float(duration)) / scene.time.step)
+    if not 1 <= count < MOST_IN_MEMORY:
+        raise InputError('duration', duration, f'a step ({float(scene.time.step):g} s) to {MOST_IN_MEMORY - 1} steps',
+                         'give the seconds to simulate')
+    own = OwnController(controller, (scene.command.max_velocity, scene.command.max_force))
+    every = _divisor(rate, scene.time.rate)
+    times = instants(scene.time.step, 0, count + 1)
+    wanted = None if setpoint is None else setpoints_at(setpoint, times.seconds + times.fractions)
+    own.reset()
+    return _Loop(own, scene, every, times, wanted).run(progress)
+
+
+def measured_scene(scene: Scene) -> Scene:
+    """Return the scene with its encoders read and in lock-step, as a node has to have it for the same run."""
+    changes: dict[str, object] = {'joint_interface.enabled': True, 'time.mode': 'lockstep', 'time.factor': 1.0}
+    if all(scene.values[name] == value for name, value in changes.items()):
+        return scene
+    return replace(scene_from_values({**scene.values, **changes}, scene.summary), sources=scene.sources)
+
+
+def _divisor(rate: float | None, of_rig: float) -> int:
+    """Return how many steps of the rig there are in one of the controller."""
+    if rate is None:
+        return 1
+    allowed, fix = f'time.rate ({of_rig:g} Hz) divided by a whole number', 'or change time.rate of the scene'
+    if not 0.0 < rate <= of_rig:
+        raise InputError('rate', rate, allowed, f'{of_rig:g} asks after each step')
+    steps = decimal(of_rig) / decimal(float(rate))
+    if steps.denominator != 1:
+        raise InputError('rate', rate, allowed, f'for example {of_rig / round(steps):g}, {fix}')
+    return int(steps)
+
+
+class _Loop:
+    """A run under way."""
+
+    def __init__(self, own: OwnController, scene: Scene, every: int, times: Instants, wanted: Any) -> None:
+        self._own, self._scene, self._every = own, scene, every
+        self._rig = scene.make_rig()
+        self._watchdog = Watchdog(scene.command.timeout)
+        self._times, self._wanted = times, wanted
+        self._record = LoopRecord(self._rig.simulator.sample().mode, len(times.seconds) * _ROW.size)
+
+    def run(self, progress: Progress) -> ClosedLoopRun:
+        """Make all steps."""
+        cost = CostMeter()
+        try:
+            self._make_steps(progress)
+        except (ControllerError, SolverError) as error:
+            if isinstance(error, ControllerError) and self._rig.step >= 0:
+                error.run = self._made(cost)
+            raise
+        self._rig.simulator.require_sound()
+        return self._made(cost)
+
+    def _make_steps(self, progress: Progress) -> None:
+        own, record, rig, every = self._own, self._record, self._rig, self._every
+        ask, limit, rows, size = own.ask, self._scene.command.max_velocity, record.rows, _ROW.size
+        watchdog, now = self._watchdog if self._watchdog.is_on else None, self._times.nanoseconds().tolist()
+        times: list[float] = (self._times.seconds + self._times.fractions).tolist()
+        setpoints = as_setpoints(self._wanted, len(times))
+        last = len(times) - 1
+        velocity = force = None
+        held = Measured(0.0, 0.0, 0.0, 0.0)
+        for step, (time, setpoint) in enumerate(zip(times, setpoints)):
+            if watchdog is not None and (silence := watchdog.silence(rig.counts.heard, now[max(step - 1, 0)])):
+                rig.time_out(silence)
+            row, measured, events, rig_events = rig.make_row(velocity, force)
+            _ROW.pack_into(rows, step * size, *row)
+            if events or rig_events:
+                record.note(step, events, rig_events)
+            record.measured.append(measured)
+            held = measured or held
+            velocity = force = None
+            if step % every == 0 and step < last:
+                try:
+                    answer = ask(time, tuple_of(Measurement, (*held, row[_DRIVE_FORCE], measured is None, setpoint)))
+                except Exception as error:
+                    own.failed(error, step, time)
+                if type(answer) is float and -limit <= answer <= limit:
+                    velocity = answer
+                else:
+                    velocity, force = own.command(answer, step, time)
+                record.commands.append((step + 1, velocity, force))
+            if progress and step % _REPORTED_EVERY == 0:
+                progress(step / last)
+
+    def _made(self, cost: CostMeter) -> ClosedLoopRun:
+        return ClosedLoopRun.of(self._scene, self._record, self._rig, self._own.name, self._every, self._wanted,
+                                cost.so_far())

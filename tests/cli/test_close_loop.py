@@ -1,0 +1,148 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip close-loop`: controllers from files."""
+
+import json
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from stickslip_sim.check.verification import verify
+from stickslip_sim.controllers.own_controller import load_controller, parse_gain
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.recording import read_run
+from tests.support.tool import Capture, answered, refused
+
+OWN = '''
+from dataclasses import dataclass
+from own_gains import DEFAULT
+
+@dataclass
+class Own:
+    kp: float = DEFAULT
+    name: str = ''
+
+    def __call__(self, t, measured):
+        return measured.setpoint.velocity + self.kp * (measured.setpoint.position - measured.slider_position)
+
+def still(t, measured):
+    return 0.0
+
+def fails(t, measured):
+    return 0.01 / (0.05 - t)
+
+class Needs:
+    def __init__(self, kp):
+        raise ValueError('kp is too large')
+
+ready, number = Own(3.0), 3
+'''
+LOOP = '--scene', 'positioning', '--duration', '0.2'
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return the working directory, with a controller, a setpoint and limits."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / 'own_gains.py').write_text('DEFAULT = 5.0\n')
+    (tmp_path / 'own.py').write_text(OWN)
+    (tmp_path / 'move.csv').write_text('time,position\n0,0\n1,0.002\n')
+    (tmp_path / 'limits.yaml').write_text('limits: {peak_speed: {max: 1.0}}\n')
+    (tmp_path / 'narrow.yaml').write_text('limits: {following_error: {max: 1.0e-9}}\n')
+    return tmp_path
+
+
+def test_a_run_with_all_that_it_can_write(folder: Path, capsys: Capture) -> None:
+    code, out, err = answered(
+        capsys, 'close-loop', 'own.py:Own', *LOOP, '--setpoint', 'move.csv', '--gain', 'kp=8', '--gain', 'name=mine',
+        '--rate', '500', '--limits', 'limits.yaml', '--out', 'runs/mine', '--plot', 'mine.png', '--junit', 'mine.xml',
+        '--json', 'mine.json', '--set', 'encoder.resolution=1e-6')
+    assert (code, err) == (0, '')
+    assert out.startswith('positioning: 0.2 s with the exact solver\n')
+    assert 'PASSED: 1 of 1' in out
+    assert out.endswith('written: runs/mine, mine.png, mine.json, mine.xml\n')
+    recorded = read_run('runs/mine')
+    assert verify(recorded).difference is None
+    assert len(recorded.commands['time']) == 100
+    assert recorded.scene.values['encoder.resolution'] == 1e-6
+    found = json.loads((folder / 'mine.json').read_text())
+    assert found['passed'] is True
+    assert found['receipt']['controller'] == {'name': 'Own', 'rate': 500.0}
+    assert ElementTree.parse(folder / 'mine.xml').getroot().get('failures') == '0'
+    assert answered(capsys, 'check', 'runs/mine', '--limits', 'limits.yaml')[0] == 0
+    assert answered(capsys, 'verify', 'runs/mine')[1].startswith('identical, 201 steps')
+
+
+def test_a_limit_that_is_not_kept(folder: Path, capsys: Capture) -> None:
+    code, out, err = answered(capsys, 'close-loop', 'own.py:Own', *LOOP, '--setpoint', 'move.csv', '--limits',
+                              'narrow.yaml', '--out', 'run')
+    assert code == 3
+    assert 'FAILED: 1 of 1: following_error' in out
+    assert err == 'stickslip: positioning does not keep narrow.yaml: following_error\n'
+    assert (folder / 'run' / 'metadata.yaml').is_file()
+
+
+def test_to_standard_output(capsys: Capture) -> None:
+    code, out, _ = answered(capsys, 'close-loop', 'own.py:still', *LOOP, '--json', '-')
+    assert code == 0
+    assert json.loads(out)['receipt']['controller']['name'] == 'still'
+
+
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (['own.py:Onw'], "controller = 'own.py:Onw' is refused: must be a class, function or callable object of own.py; did"
+                     ' you mean Own?'),
+    (['own.py:number'], 'there are: Own, still, fails, Needs, ready'),
+    (['own.py'], 'must be FILE.py:NAME'),
+    (['ownn.py:Own'], 'did you mean own.py?'),
+    (['own.py:Own', '--gain', 'kq=3'], "'Own(kq=3)' is refused: must be Own(kp: float = 5.0, name: str = '') -> None"),
+    (['own.py:Own', '--gain', 'kp'], "--gain = 'kp' is refused: must be NAME=VALUE"),
+    (['own.py:still', '--gain', 'kp=3'], 'kp = 3 is refused: must be left out: still is no class'),
+    (['own.py:Needs', '--gain', 'kp=3'], 'ValueError: kp is too large (own.py, line '),
+    (['own.py:Own'], "Own raised AttributeError: 'NoneType' object has no attribute 'velocity' (own.py, line "),
+    (['own.py:fails'], 'velocity of fails after step 41 (t = 0.041 s) = 1.11'),
+    (['own.py:fails', '--set', 'command.max_velocity=1e6'], 'fails raised ZeroDivisionError: '),
+    (['own.py:still', '--rate', '300'], 'rate = 300.0 is refused'),
+    (['own.py:still', '--setpoint', 'limits.yaml'], "setpoint = 'time' is refused: must be the name of one"),
+    (['own.py:still', '--setpoint', 'mvoe.csv'], 'did you mean move.csv?'),
+    (['own.py:still', '--duration', '2', '--setpoint', 'move.csv'], "setpoint = '0 to 1 s' is refused"),
+    (['own.py:still', '--junit', 'x.xml'], '--junit is of no use alone'),
+    (['own.py:still', '--set', 'axis.mass=-1'], 'axis.mass = -1'),
+    (['raises.py:Own'], 'ZeroDivisionError: division by zero (raises.py, line 1)'),
+    (['leaves.py:Own'], 'must be a file that can be imported; SystemExit: 3 (leaves.py, line 2)'),
+    (['wrong.py:Own'], 'SyntaxError: '),
+])
+def test_refused_in_one_line_and_nothing_is_written(arguments: list[str], said: str, folder: Path, capsys: Capture
+                                                    ) -> None:
+    (folder / 'raises.py').write_text('1 / 0\n')
+    (folder / 'leaves.py').write_text('import sys\nsys.exit(3)\n')
+    (folder / 'wrong.py').write_text('def f(:\n')
+    before = {path.name for path in folder.iterdir()}
+    assert said in refused(capsys, 'close-loop', *LOOP, *arguments, '--out', 'run', '--plot', 'run.png')
+    assert {path.name for path in folder.iterdir()} - {'__pycache__'} == before
+
+
+class TestLoading:
+    def test_classes_functions_and_objects(self) -> None:
+        assert load_controller('own.py:Own', {'kp': 2.0}).kp == 2.0
+        assert load_controller('own.py:Own').kp == 5.0
+        assert load_controller('own.py:still')(0.0, None) == 0.0
+        assert load_controller('own.py:ready').kp == 3.0
+
+    def test_a_file_is_read_again(self, folder: Path) -> None:
+        assert load_controller('own.py:Own').kp == 5.0
+        (folder / 'own.py').write_text(OWN.replace('kp: float = DEFAULT', 'kp: float = 66.0'))
+        assert load_controller(f'{folder}/own.py:Own').kp == 66.0
+
+    @pytest.mark.parametrize(('text', 'value'), [
+        ('kp=4', 4), ('kp=4e-3', 4e-3), ('kp=-2', -2), ('kp=fast', 'fast'), ('kp=(1.0, 2)', (1.0, 2)),
+        ('kp=a=b', 'a=b'),
+    ])
+    def test_gains(self, text: str, value: object) -> None:
+        assert parse_gain(text) == ('kp', value)
+
+    @pytest.mark.parametrize('text', ['kp', '=4', 'kp=', 'k p=4', '4=k'])
+    def test_no_gains(self, text: str) -> None:
+        with pytest.raises(InputError, match='--gain'):
+            parse_gain(text)
