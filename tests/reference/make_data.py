@@ -21,6 +21,7 @@ from typing import Any
 import mpmath
 from mpmath import mpf
 
+from stickslip_sim.core.input_profile import constant
 from stickslip_sim.reference import automaton
 from stickslip_sim.reference.exact_run import Run
 from stickslip_sim.reference.problem import problem
@@ -102,7 +103,7 @@ def _sensitivity(scene: Scene, run: Run) -> list[float] | None:
             exact,
             mass=exact.mass * (1 + EPSILON),
             stiffness=exact.stiffness * (1 - EPSILON),
-            normal=exact.normal * (1 + EPSILON),
+            normal=constant(mpf(exact.normal.values[0]) * (1 + EPSILON)),   # type: ignore[arg-type]
         )
     other = automaton.run(shifted, scene.duration, 40)
     if [(e.kind, e.direction) for e in other] != [(e.kind, e.direction) for e in run]:

@@ -76,7 +76,7 @@ def named_scenes() -> list[Scene]:
 
 
 # the first break-away of micro_feed is at 15 s; fast_feed settles, and later than 3 s its swing drowns in doubles
-SHIPPED_DURATIONS = {'micro_feed': 40.0, 'fast_feed': 3.0}
+SHIPPED_DURATIONS = {'micro_feed': 40.0, 'fast_feed': 3.0, 'ball_screw': 1.0}
 
 
 def shipped_scenes() -> list[Scene]:

@@ -17,8 +17,8 @@ from tests.support.scene_files import refusal, write
 
 
 def test_names_of_the_shipped_scenes() -> None:
-    assert scene_names() == ['cutting_force', 'fast_feed', 'micro_feed', 'paper_fig4_constant', 'paper_fig4_falling',
-                             'paper_fig7', 'paper_fig8', 'positioning', 'stribeck']
+    assert scene_names() == ['ball_screw', 'cutting_force', 'fast_feed', 'micro_feed', 'paper_fig4_constant',
+                             'paper_fig4_falling', 'paper_fig7', 'paper_fig8', 'positioning', 'stribeck']
 
 
 @pytest.mark.parametrize('name', scene_names())

@@ -83,7 +83,7 @@ def test_null_is_as_if_left_out() -> None:
     {},
     {'contact.model': 'rigid', 'friction.acceleration_dependence': False},
     {'friction.kinetic.law': 'table', 'friction.kinetic.velocities': [0.0, 0.02], 'record.folder': None, 'seed': 4,
-     'friction.kinetic.coefficients': [0.05, 0.04], 'force.course': 'constant', 'force.constant': 3.0,
+     'friction.kinetic.coefficients': [0.004, 0.003], 'force.course': 'constant', 'force.constant': 3.0,
      'drive.course': 'constant', 'drive.velocity': 0.002},
 ])
 def test_a_file_with_the_values_of_a_changed_scene_is_that_scene(name: str, changes: dict[str, object], tmp_path: Path

@@ -100,6 +100,20 @@ def test_fast_feed_settles_to_smooth_sliding() -> None:
     assert soon.velocity == pytest.approx(0.1, rel=1e-3)
 
 
+def test_ball_screw_comes_to_its_targets_from_both_sides_a_micrometre_off() -> None:
+    run = simulate(load_scene('ball_screw'), 15.0)
+    time, drive = run.samples['time'], run.samples['drive_position']
+    off = 1e6 * (run.samples['position'] - drive)
+    rests = [(0.8, 0.02), (2.3, 0.11), (3.85, 0.205), (5.3, 0.29), (6.85, 0.385), (7.5, 0.39), (8.15, 0.385),
+             (9.7, 0.29), (11.15, 0.205), (12.7, 0.11), (14.2, 0.02), (15.0, 0.0)]
+    for end, target in rests:
+        row = int(np.searchsorted(time, end))
+        assert drive[row] == pytest.approx(target, abs=1e-12)
+        assert off[row] == pytest.approx(-0.35 if end < 8.0 else 0.35, abs=0.1)
+    sliding = (time > 1.2) & (time < 1.6)
+    assert off[sliding] == pytest.approx(-120.0 / 170.0, abs=0.01)
+
+
 def test_cutting_force_ties_the_stick_slip_to_the_cut() -> None:
     events, _ = play('cutting_force', 20.0)
     stops = of(events, EventKind.STICK)[-40:]

@@ -3,18 +3,38 @@
 """Limits in a file: read strictly, so that a misspelt limit is refused and never passes unseen."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from ..core.errors import InputError, RecordingError, suggestion
+from ..figures.positioning import PositionFigures
+from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, wanted_column
 from ..runs import Run
 from ..scene import Parameter
 from ..scene.load import named, read_text
 from ..scene.ros_yaml import read_yaml, section
-from .measures import FARTHEST, KINDS, TARGET, TIMING_LIMIT, Kind, no_sample_in
+from ..scene.schema import MOST_POINTS
+from .measures import (
+    CIRCLE_KINDS,
+    DWELL,
+    FARTHEST,
+    KINDS,
+    TARGET,
+    TARGETS,
+    TIMING_LIMIT,
+    TOLERANCE,
+    CircleKind,
+    Kind,
+    MeasuredFigure,
+    Positioning,
+    no_sample_in,
+)
 from .observed_run import (
     KnownCommands,
     MotionBlock,
@@ -99,24 +119,65 @@ def _time(name: str, given: object) -> float:
     return time
 
 
-_SECTIONS = ('window', 'target', 'reference', 'commands', 'limits')
+_SECTIONS = ('window', 'target', 'reference', 'commands', 'limits', 'circle', 'positioning')
+RADIUS = Parameter('radius', 'double', None, 'm', 'of the nominal circle', low=0.0, low_open=True, high=FARTHEST)
+_CENTER = Parameter('center', 'double_array', None, 'm', 'x and y of it', low=-FARTHEST, high=FARTHEST)
 _TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=LATEST_TIME)
 _POSITIONS = Parameter('positions', 'double_array', None, 'm', 'at these times', low=-FARTHEST, high=FARTHEST)
 _NAME = Parameter('name', 'string', None, '', 'of a limit')
 _COMMANDS = Parameter('commands', 'string', 'required', '', 'whether a run of the node needs some to be checked',
                       choices=('required', 'optional'))
 _VALID = 'valid'
+_COLUMNS = {'time': TIMES, 'position': LENGTHS}
+_OF_A_FILE = ('file', *_COLUMNS, *(f'{name}_unit' for name in _COLUMNS))
 
 
 @dataclass(frozen=True)
 class Limit:
-    """A figure within a window must not be above `maximum` (in the unit of its kind)."""
+    """A figure within a window must not be beyond `bound` (in the unit of its kind)."""
 
     name: str
     kind: Kind
-    maximum: float
+    bound: float
     window: Window
     settings: Mapping[str, float]   # what the kind asks for beside
+
+    def margin(self, value: float) -> float:
+        """Return what a value leaves up to the bound; negative beyond it."""
+        return value - self.bound if self.kind.is_least else self.bound - value
+
+    def outcome(self, figure: MeasuredFigure, span: CheckedSpan) -> 'LimitOutcome':
+        """Return what a figure of a span comes to."""
+        value, remark = figure
+        passed = value >= self.bound if self.kind.is_least else value <= self.bound
+        return LimitOutcome(self.name, self, passed, value, remark, span)
+
+    @contextmanager
+    def named(self) -> Iterator[None]:
+        """Put the name of the limit in front of that of an InputError."""
+        try:
+            yield
+        except InputError as error:
+            raise InputError(f'{self.name}.{error.name}', error.value, error.allowed, error.fix) from None
+
+
+class NominalCircle(NamedTuple):
+    """What a file says of the circle that two axes are to follow, m; the rest is that of the commanded path."""
+
+    radius: float | None = None
+    center: tuple[float, float] | None = None
+
+
+class RestSettings(NamedTuple):
+    """What a file says of the rests of a positioning test; see `Positioning`."""
+
+    targets: tuple[float, ...] = ()
+    dwell: float = 0.1   # s
+    tolerance: float = 1e-6   # m
+
+
+_AS_COMMANDED, _ANY_REST = NominalCircle(), RestSettings()
+_POSITIONING = TARGETS, DWELL, TOLERANCE
 
 
 @dataclass(frozen=True)
@@ -131,6 +192,22 @@ class Limits:
     reference: Reference | None = None
     window: Window = WHOLE_RUN
     needs_commands: bool = True
+    circle: NominalCircle = _AS_COMMANDED
+    positioning: RestSettings = _ANY_REST
+
+    def with_radius(self, radius: float | None) -> 'Limits':
+        """Return the limits for a nominal circle of another radius, m; raises InputError."""
+        if radius is None:
+            return self
+        return replace(self, circle=self.circle._replace(radius=_checked(RADIUS, '', radius, '--radius')))
+
+    def check_axes(self, are_two: bool) -> None:
+        """Raise InputError when a limit is for the path of two axes and a check is not, or the other way round."""
+        for limit in self.limits:
+            if isinstance(limit.kind, CircleKind) != are_two:
+                raise InputError(limit.name, limit.kind.name, 'one of ' + ', '.join(CIRCLE_KINDS) if are_two else
+                                 'left out in a check of one axis', 'check each axis by itself with other limits'
+                                 if are_two else 'check two axes: --circle RUN_X RUN_Y')
 
     def reference_at(self, first_command: float | None) -> Reference | None:
         """Return the reference in times of a run with this first command."""
@@ -142,23 +219,26 @@ class Limits:
 def load_limits(path: str) -> Limits:
     """Return the limits of a file; raises InputError, whose text begins with the file."""
     with named(path):
-        return limits_of(read_yaml(read_text(Path(path), 'limits file')))
+        return limits_of(read_yaml(read_text(Path(path), 'limits file')), Path(path).parent)
 
 
-def limits_of(document: object) -> Limits:
-    """Return the limits of a document as YAML gives it; raises InputError."""
+def limits_of(document: object, folder: Path = Path()) -> Limits:
+    """Return the limits of a document as YAML gives it, whose files are in a folder; raises InputError."""
     given = section('file', document, _SECTIONS, CHECK_PAGE)
-    entries = given.get('limits')
-    if not isinstance(entries, Mapping) or not entries:
+    entries = given.get('limits', {} if {'circle', 'positioning'} & set(given) else None)
+    if not isinstance(entries, Mapping) or not (entries or 'limits' not in given):
         raise InputError('limits', entries, 'a section with at least one limit', 'for example sticks: {max: 3}')
     window = window_of('window', given.get('window'), WHOLE_RUN)
     defaults = {'target': _checked(TARGET, '', given['target'])} if 'target' in given else {}
+    positioning = _settings('positioning', given, _POSITIONING)
+    defaults = {**positioning, **defaults}
     for name in entries:
         _NAME.checked(name)
     return Limits(tuple(_limit(name, entry, window, defaults) for name, entry in entries.items()
                         if name != TIMING_LIMIT),
-                  _timing(entries), _reference(given.get('reference')), window,
-                  _checked(_COMMANDS, '', given.get('commands', _COMMANDS.default)) == _COMMANDS.default)
+                  _timing(entries), _reference(given.get('reference'), folder), window,
+                  _checked(_COMMANDS, '', given.get('commands', _COMMANDS.default)) == _COMMANDS.default,
+                  _circle(given), RestSettings(**positioning))
 
 
 def check_fit(limits: Limits, begin: float, end: float, has_timing: bool, commands: KnownCommands | None) -> None:
@@ -179,20 +259,36 @@ def _limit(name: str, entry: object, window: Window, defaults: Mapping[str, Any]
     if not isinstance(entry, Mapping):
         raise InputError(name, entry, 'a limit in braces', f'for example {name}: {{max: 1.0e-3}}')
     kind = _kind(name, entry)
-    known = ('check', 'max', 'window', *(setting.name for setting in kind.settings))
+    known = ('check', kind.bound.name, 'window', *(setting.name for setting in kind.settings))
     given = section(name, entry, known, CHECK_PAGE)
     settings = {setting.name: _setting(setting, name, given, defaults) for setting in kind.settings}
     own_window = window_of(f'{name}.window', given.get('window'), window)
-    return Limit(name, kind, _setting(kind.maximum, name, given, {}), own_window, settings)
+    return Limit(name, kind, _setting(kind.bound, name, given, {}), own_window, settings)
+
+
+def _settings(name: str, given: Mapping[str, object], entries: Sequence[Parameter]) -> dict[str, Any]:
+    """Return what a section that may be left out gives."""
+    if name not in given:
+        return {}
+    values = section(name, given[name], [entry.name for entry in entries], CHECK_PAGE)
+    return {entry.name: _checked(entry, name, values[entry.name]) for entry in entries if entry.name in values}
+
+
+def _circle(given: Mapping[str, object]) -> NominalCircle:
+    circle = NominalCircle(**_settings('circle', given, (RADIUS, _CENTER)))
+    if circle.center is not None and len(circle.center) != 2:
+        raise InputError('circle.center', list(circle.center), 'two numbers, x and y in m', 'write it as [0.0, 0.0]')
+    return circle
 
 
 def _kind(name: str, entry: Mapping[str, object]) -> Kind:
     """Return what is limited: `check`, or the name itself."""
     given = entry.get('check', name)
-    if not isinstance(given, str) or given not in KINDS:
-        fix = suggestion(str(given), KINDS, f'name one: {name}: {{check: sticks, max: 3}}')
-        raise InputError(f'{name}.check' if 'check' in entry else 'limit', given, 'one of ' + ', '.join(KINDS), fix)
-    return KINDS[given]
+    kinds = {**KINDS, **CIRCLE_KINDS}
+    if not isinstance(given, str) or given not in kinds:
+        fix = suggestion(str(given), kinds, f'name one: {name}: {{check: sticks, max: 3}}')
+        raise InputError(f'{name}.check' if 'check' in entry else 'limit', given, 'one of ' + ', '.join(kinds), fix)
+    return kinds[given]
 
 
 def _setting(entry: Parameter, name: str, given: Mapping[str, object], defaults: Mapping[str, Any]) -> Any:
@@ -210,9 +306,11 @@ def _timing(entries: Mapping[str, object]) -> bool:
     return TIMING_LIMIT in entries
 
 
-def _reference(given: object) -> Reference | None:
+def _reference(given: object, folder: Path) -> Reference | None:
     if given is None:
         return None
+    if isinstance(given, Mapping) and 'file' in given:
+        return _reference_of_file(section('reference', given, _OF_A_FILE, CHECK_PAGE), folder)
     values = section('reference', given, Reference._fields, CHECK_PAGE)
     for name in Reference._fields:
         if name not in values:
@@ -225,6 +323,23 @@ def _reference(given: object) -> Reference | None:
     if not all(before < after for before, after in pairwise(reference.times)):
         raise InputError('reference.times', values['times'], 'strictly increasing', 'put them in order')
     return reference
+
+
+def _reference_of_file(given: Mapping[str, object], folder: Path) -> Reference:
+    """Return the reference in columns of a CSV file; raises InputError."""
+    for name, value in given.items():
+        _checked(replace(_NAME, name=name), 'reference', value)
+    words = {name: str(value) for name, value in given.items()}
+    wanted = [wanted_column(f'reference.{name}', words.get(name, name), f'reference.{name}_unit',
+                            words.get(f'{name}_unit'), units) for name, units in _COLUMNS.items()]
+    table = CsvTable('reference.file', folder / words['file'], wanted, MOST_POINTS)
+    times, positions = table.columns
+    late = np.flatnonzero(np.diff(times) <= 0.0)
+    if len(late):
+        row = int(late[0]) + 1
+        table.refuse(row, float(times[row]), f'a time after the one before it, {float(times[row - 1])!r} s',
+                     'sort the rows by time, and leave out what is there twice')
+    return Reference(tuple(times.tolist()), tuple(positions.tolist()))
 
 
 def _checked(entry: Parameter, section: str, value: object, name: str = '') -> Any:
@@ -248,7 +363,7 @@ class LimitOutcome(NamedTuple):
     @property
     def margin(self) -> float | None:
         """What is left up to the limit; negative beyond it."""
-        return None if self.limit is None or self.value is None else self.limit.maximum - self.value
+        return None if self.limit is None or self.value is None else self.limit.margin(self.value)
 
 
 def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
@@ -256,6 +371,7 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
 
     A recording that was cut off is checked as far as it goes.
     """
+    limits.check_axes(are_two=False)
     motion, timing, commands = observed_motion(run), timing_of(run), commands_of(run)
     has_timing = timing is not None and timing.valid is not None
     check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, has_timing, commands)
@@ -273,6 +389,19 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     if limits.timing and timing:
         outcomes.append(LimitOutcome(TIMING_LIMIT, None, bool(timing.valid), None, timing.verdict))
     return outcomes
+
+
+def positions_of(limits: Limits, run: Run) -> list[PositionFigures]:
+    """Return the figures of ISO 230-2 of each target within the window of the file; raises InputError without any."""
+    motion, commands = observed_motion(run), commands_of(run)
+    span = limits.window.at(commands.first if commands else None) or CheckedSpan()
+    begin = motion.begin if span.begin is None else span.begin
+    end = motion.end if span.end is None else span.end
+    measurement = Positioning(motion.cut(begin, end), *limits.positioning)
+    reference = limits.reference_at(commands.first if commands else None)
+    for block in motion_blocks(states_of(run), motion.events, reference):
+        measurement.take(block.cut(begin, end))
+    return measurement.positions
 
 
 class _Open:
@@ -293,11 +422,8 @@ class _Open:
         limit = self._limit
         if not self._has_samples:
             raise no_sample_in(self._span.begin, self._span.end)
-        try:
-            value, remark = self._measurement.figure()
-        except InputError as error:
-            raise InputError(f'{limit.name}.{error.name}', error.value, error.allowed, error.fix) from None
-        return LimitOutcome(limit.name, limit, value <= limit.maximum, value, remark, self._checked)
+        with limit.named():
+            return limit.outcome(self._measurement.figure(), self._checked)
 
 
 def _begun(limit: Limit, motion: ObservedMotion, commands: KnownCommands | None, needs_commands: bool

@@ -51,6 +51,7 @@ class MotionBlock(NamedTuple):
     time: Numbers        # s, rising
     position: Numbers    # m, slider
     commanded: Numbers   # m, the drive or a reference
+    command: Numbers     # m/s, velocity of the drive
     points: Points
 
     @property
@@ -62,7 +63,7 @@ class MotionBlock(NamedTuple):
         """Return the part from `begin` to `end` (s), both included."""
         of_samples, of_points = _rows(self.time, begin, end), _rows(self.points.time, begin, end)
         return MotionBlock(self.time[of_samples], self.position[of_samples], self.commanded[of_samples],
-                           Points(*(column[of_points] for column in self.points)))
+                           self.command[of_samples], Points(*(column[of_points] for column in self.points)))
 
 
 @dataclass(frozen=True)
@@ -102,11 +103,11 @@ def motion_blocks(states: Iterable[Columns], events: Sequence[Event], reference:
         upto = int(np.searchsorted(times, time[-1], 'right'))
         points = _points(block, times[done:upto], [events[k] for k in first[done:upto]])
         yield MotionBlock(time, block['position'], block['drive_position'] if reference is None else reference.at(time),
-                          points)
+                          block['drive_velocity'], points)
         done = upto
     none = np.empty(0)
     late = [events[k] for k in first[done:]]
-    yield MotionBlock(none, none, none, _points(dict.fromkeys(Points._fields, none), times[done:], late))
+    yield MotionBlock(none, none, none, none, _points(dict.fromkeys(Points._fields, none), times[done:], late))
 
 
 def _points(block: Columns, times: Numbers, events: Sequence[Event]) -> Points:
@@ -122,8 +123,9 @@ def _rows(time: Numbers, begin: float, end: float) -> slice:
     return slice(int(np.searchsorted(time, begin, 'left')), int(np.searchsorted(time, end, 'right')))
 
 
-_STATE_FIELDS = ('time', 'position', 'velocity', 'drive_position', 'mode')
-_SEEN_FIELDS = (*_STATE_FIELDS, 'step')   # the steps are for `missing_steps`
+_SEEN = ('time', 'position', 'velocity', 'drive_position', 'mode')
+_STATE_FIELDS = (*_SEEN, 'drive_velocity')
+_SEEN_FIELDS = (*_SEEN, 'step')   # the steps are for `missing_steps`
 _NANOSECOND = 1e-9
 
 
@@ -209,13 +211,13 @@ def unmeasured(run: Run) -> tuple[str, ...]:
     """Return what of a state was not measured, in a run that was imported."""
     if not isinstance(run, MeasuredRun):
         return ()
-    return tuple(name for name in ('position', 'drive_position') if name not in run.measured)
+    return tuple(name for name in ('position', 'drive_position', 'drive_velocity') if name not in run.measured)
 
 
 def _recorded_motion(run: RecordedRun) -> ObservedMotion:
     """Look once through what was recorded; raises RecordingError unless it is that of one run."""
     unknown = unmeasured(run)
-    states = StatesSeen([name for name in _STATE_FIELDS if name not in unknown])
+    states = StatesSeen([name for name in _SEEN if name not in unknown])
     events = _taken(run, states)
     if not states.count:
         raise RecordingError(f'{run.bag.path}: no state of the axis in it; nothing can be checked')

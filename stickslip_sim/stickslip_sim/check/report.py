@@ -9,8 +9,9 @@ from xml.etree import ElementTree
 
 from ..core.types import EventKind
 from ..figures.catalogue import OF_A_CYCLE, head_of, unit_of
+from ..figures.circular import CircularTest
 from ..figures.cycles import Summary
-from ..recording import RecordedRun
+from ..recording import MeasuredRun, RecordedRun
 from ..report.model import NOTE, Part, Sentence, Table
 from ..report.quantity import quantity
 from ..report.values import json_text
@@ -18,7 +19,8 @@ from ..runs import Run
 from ..runs.samples import reduced
 from ..scene.load import values_in_file
 from ..scene.values import scene_text
-from .limits import LimitOutcome
+from .iso_report import IsoTest, iso_parts, iso_values
+from .limits import LimitOutcome, Limits, outcomes_of, positions_of
 from .measures import TIMING_LIMIT
 from .observed_run import commands_of, gaps_in, observed_motion, timing_of
 from .origin import made_with
@@ -28,11 +30,28 @@ _DRAWN = 'position', 'velocity', 'friction_force'   # of what if
 
 
 class Checked(NamedTuple):
-    """A run that was checked, under the name that it has in what is written about it."""
+    """A run that was checked, under the name that it has in what is written about it; None: runs of two axes.
+
+    `test` has all figures of ISO 230 that were asked for.
+    """
 
     name: str
-    run: Run
+    run: Run | None
     outcomes: Sequence[LimitOutcome]
+    test: IsoTest | None = None
+
+
+def check_run(name: str, run: Run, limits: Limits, positioning: bool = False) -> Checked:
+    """Return a run as it was checked, with all figures of `positioning`; raises InputError and RecordingError."""
+    return Checked(name, run, outcomes_of(limits, run), positions_of(limits, run) if positioning else None)
+
+
+def draw_test(checked: Checked, path: Path) -> None:
+    """Draw the circle of a check."""
+    from ..plots.polar import plot_circle  # matplotlib takes half a second
+
+    assert isinstance(checked.test, CircularTest)
+    plot_circle(checked.test, checked.name, path)
 
     @property
     def passed(self) -> bool:
@@ -42,18 +61,20 @@ class Checked(NamedTuple):
 
 def verdict_line(checked: Checked) -> str:
     """Return passed or failed, of how many, and which failed."""
-    _, run, outcomes = checked
+    _, run, outcomes, _ = checked
     failed = failures(outcomes)
     if failed:
         return f'FAILED: {len(failed)} of {len(outcomes)}: {", ".join(failed)}'
-    timing = timing_of(run)
-    doubt = ', but the run is not valid in real time' if run.is_complete and timing and timing.valid is False else ''
+    timing = timing_of(run) if run and run.is_complete else None
+    doubt = ', but the run is not valid in real time' if timing and timing.valid is False else ''
     return f'PASSED: {len(outcomes)} of {len(outcomes)}{doubt}'
 
 
 def checked_line(checked: Checked) -> str:
     """Return what was checked: from when to when, how much is known of it, and when its first command came."""
-    name, run, _ = checked
+    name, run, *_ = checked
+    if run is None:
+        return name
     motion, commands = observed_motion(run), commands_of(run)
     text = (f'{name}: {motion.begin:g} to {motion.end:g} s, {motion.states} states, '
             f'{len(motion.events)} transitions')
@@ -62,15 +83,15 @@ def checked_line(checked: Checked) -> str:
     return f'{text}, {"no command" if commands.first is None else f"first command at t = {commands.first:g} s"}'
 
 
-def real_time_verdict(run: Run) -> str:
+def real_time_verdict(run: Run | None) -> str:
     """Return what the node said of its timing at the end of a run; empty without that."""
-    timing = timing_of(run) if run.is_complete else None
+    timing = timing_of(run) if run and run.is_complete else None
     return timing.verdict if timing else ''
 
 
 def complaint(checked: Checked, limits_file: str) -> str:
     """Return in one line why a run did not pass, empty when it did."""
-    name, _, outcomes = checked
+    name, _, outcomes, _ = checked
     missed = [outcome.name for outcome in outcomes if not (outcome.passed or outcome.is_unchecked)]
     unchecked = [outcome.name for outcome in outcomes if outcome.is_unchecked]
     parts = [f'{name} does not keep {limits_file}: {", ".join(missed)}'] if missed else []
@@ -91,7 +112,7 @@ def line_of(outcome: LimitOutcome) -> str:
     if outcome.limit is None or outcome.value is None:
         return outcome.remark
     unit = f' {outcome.limit.kind.unit}'.rstrip()
-    text = f'{outcome.limit.kind.name} = {outcome.value!r}{unit}, limit {outcome.limit.maximum!r}{unit}'
+    text = f'{outcome.limit.kind.name} = {outcome.value!r}{unit}, limit {outcome.limit.bound!r}{unit}'
     return f'{text} ({outcome.remark})' if outcome.remark else text
 
 
@@ -101,15 +122,20 @@ def checks_as_values(runs: Sequence[Checked]) -> dict[str, Any]:
     return found[0] if len(found) == 1 else {'passed': all(one['passed'] for one in found), 'runs': found}
 
 
-def _found(name: str, run: Run, outcomes: Sequence[LimitOutcome]) -> dict[str, Any]:
-    motion, commands = observed_motion(run), commands_of(run)
+def _found(name: str, run: Run | None, outcomes: Sequence[LimitOutcome], test: IsoTest | None) -> dict[str, Any]:
     return {
-        'run': {'name': name, 'begin': motion.begin, 'end': motion.end, 'states': motion.states,
-                'events': len(motion.events), 'is_complete': run.is_complete, 'notes': list(gaps_in(run)),
-                'first_command': commands.first if commands else None, 'timing': timing_of(run)},
+        'run': {'name': name, **(_facts_of(run, outcomes) if run else {})},
         'passed': not failures(outcomes),
         'limits': [_entry(outcome) for outcome in outcomes],
+        **(iso_values(test) if test else {}),
     }
+
+
+def _facts_of(run: Run, outcomes: Sequence[LimitOutcome]) -> dict[str, Any]:
+    motion, commands = observed_motion(run), commands_of(run)
+    return {'begin': motion.begin, 'end': motion.end, 'states': motion.states, 'events': len(motion.events),
+            'is_complete': run.is_complete, 'notes': list(_notes(run, outcomes)),
+            'first_command': commands.first if commands else None, 'timing': timing_of(run)}
 
 
 def _entry(outcome: LimitOutcome) -> dict[str, Any]:
@@ -118,7 +144,7 @@ def _entry(outcome: LimitOutcome) -> dict[str, Any]:
     if limit is None:
         return {**found, 'check': TIMING_LIMIT}
     return {**found, 'check': limit.kind.name, 'unit': limit.kind.unit, 'measured': outcome.value,
-            'max': limit.maximum, 'margin': outcome.margin, 'window': outcome.span, **limit.settings}
+            limit.kind.bound.name: limit.bound, 'margin': outcome.margin, 'window': outcome.span, **limit.settings}
 
 
 # The outcome as JUnit XML, which CI servers read: one test case for each limit.
@@ -137,7 +163,7 @@ def junit_text(runs: Sequence[Checked]) -> str:
 
 
 def _suite(checked: Checked) -> ElementTree.Element:
-    name, run, outcomes = checked
+    name, run, outcomes, _ = checked
     failed = sum(not outcome.passed for outcome in outcomes)
     suite = ElementTree.Element('testsuite', name=name, tests=str(len(outcomes)), failures=str(failed), errors='0')
     if verdict := real_time_verdict(run):
@@ -159,18 +185,42 @@ def check_report(checked: Checked) -> Iterator[Part]:
     """Yield the checked run, whether it kept real time, its missing parts, its limits, and the verdict."""
     yield checked_line(checked)
     yield from filter(None, [real_time_verdict(checked.run)])
-    yield from (Sentence(note, NOTE) for note in gaps_in(checked.run))
+    yield from (Sentence(note, NOTE) for note in (_notes(checked.run, checked.outcomes) if checked.run else ()))
+    yield from iso_parts(checked.test) if checked.test else ()
+    if not checked.outcomes:
+        return
     yield Table(('limit', 'measured', 'at most', 'margin', '', ''), [*map(_cells, checked.outcomes)], texts=(0, 4, 5))
     yield verdict_line(checked)
+
+
+def _notes(run: Run, outcomes: Sequence[LimitOutcome]) -> Iterator[str]:
+    """Yield what is missing of a run, and which limits say little of it."""
+    yield from gaps_in(run)
+    creeping = [outcome.name for outcome in outcomes if outcome.limit and outcome.limit.kind.name == 'longest_stick']
+    if creeping and not isinstance(run, MeasuredRun) and run.scene.values.get('contact.model') == 'compliant':
+        yield (f'{", ".join(creeping)}: in stick the slider moves on its compliant contact; the check standstill has '
+               'the time below a speed')
 
 
 def _cells(outcome: LimitOutcome) -> tuple[str, ...]:
     verdict = 'PASS' if outcome.passed else 'FAIL'
     if outcome.limit is None or outcome.value is None or outcome.margin is None:
         return outcome.name, '–', '–', '–', verdict, outcome.remark
-    numbers = (quantity(number, outcome.limit.kind.unit)
-               for number in (outcome.value, outcome.limit.maximum, outcome.margin))
-    return outcome.name, *numbers, verdict, outcome.remark
+    value, bound, margin = (quantity(number, outcome.limit.kind.unit)
+                            for number in (outcome.value, outcome.limit.bound, outcome.margin))
+    most = f'at least {bound}' if outcome.limit.kind.is_least else bound
+    return outcome.name, value, most, margin, verdict, outcome.remark
+
+
+def matrix(runs: Sequence[Checked]) -> Table:
+    """Return a row for each run with what was measured for each limit; those that failed say so."""
+    names = list(dict.fromkeys(outcome.name for checked in runs for outcome in checked.outcomes))
+    rows = []
+    for checked in runs:
+        of_run = {outcome.name: _cells(outcome) for outcome in checked.outcomes}
+        cells = (of_run.get(name, ('', '–', '', '', '', '')) for name in names)
+        rows.append((checked.name, *(f'{cell[1]} FAIL' if cell[4] == 'FAIL' else cell[1] for cell in cells)))
+    return Table(('run', *names), rows)
 
 
 # The verdict on a recording that was run again, and what would have been.

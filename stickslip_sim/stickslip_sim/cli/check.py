@@ -1,14 +1,15 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip check`: recorded runs or fresh simulations against the limits in a file."""
+"""`stickslip check`: recorded runs or fresh simulations against the limits in a file, and as ISO 230 has them."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import click
 
 from . import completion
 from .arguments import SceneChanges, check_sources, is_recorded, recorded_run, scene_changes, simulated, verb
-from .files import STDOUT, TEXT, say_written, show, write_text
+from .files import PICTURE, STDOUT, TEXT, say_written, show, whole, write_text
 
 if TYPE_CHECKING:
     from ..check.limits import Limits
@@ -18,56 +19,80 @@ if TYPE_CHECKING:
 @verb(short_help='Check runs against limits: pass or fail.')
 @click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...',
                 shell_complete=completion.complete_scenes)
-@click.option('--limits', 'limits_file', required=True, metavar='FILE.yaml', help='The limits (docs/check.md).')
+@click.option('--limits', 'limits_file', metavar='FILE.yaml', help='The limits (docs/check.md).')
+@click.option('--circle', is_flag=True, help='Take the runs as the axes x and y of a circle (ISO 230-4).')
+@click.option('--radius', type=float, metavar='M', help='Radius of the nominal circle, m [default: as commanded].')
+@click.option('--positioning', is_flag=True, help='Print the figures of ISO 230-2 too.')
+@click.option('--plot', type=PICTURE, metavar='FILE.png|pdf|svg', help='Draw the deviation from the circle.')
 @click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
 @click.option('--junit', type=TEXT, metavar='FILE.xml',
               help='Write JUnit XML for a CI server ("-": to standard output).')
 @click.option('--json', 'json_file', type=TEXT, metavar='FILE.json',
               help='Write everything measured ("-": to standard output).')
 @scene_changes('Change a parameter of a scene.')
-def check(sources: tuple[str, ...], limits_file: str, duration: float | None, changes: SceneChanges,
-          junit: str | None, json_file: str | None) -> None:
+def check(sources: tuple[str, ...], limits_file: str | None, circle: bool, radius: float | None, positioning: bool,
+          plot: str | None, duration: float | None, changes: SceneChanges, junit: str | None, json_file: str | None
+          ) -> None:
     """Check each RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one fails.
 
-    Of several, those that cannot be checked are named in the end, and the exit code is 2.
+    Of several, those that cannot be checked are named in the end, and the exit code is 2.  --circle takes the runs of x
+    and y, or a bag of both, and of the other sense behind them.
     """
     check_sources(sources, duration, changes)
-    if len(set(sources)) < len(sources):
-        raise click.UsageError('RUN_OR_SCENE: give each once.')
-    from ..check.limits import load_limits, outcomes_of
-    from ..check.report import Checked, check_report, checks_as_values, complaint, junit_text
+    _check_options(sources, limits_file, circle, radius, positioning, plot)
+    from ..check.circle import check_circle
+    from ..check.limits import Limits, load_limits
+    from ..check.report import check_report, check_run, checks_as_values, complaint, draw_test, junit_text, matrix
     from ..core.errors import InputError, RecordingError, VerdictError
     from ..report.values import json_text
     from .progress import progress_bar
 
-    limits = load_limits(limits_file)
+    limits = (load_limits(limits_file) if limits_file else Limits(())).with_radius(radius)
     is_printed = STDOUT not in (junit, json_file)
     found, refused = [], []
-    for source in sources:
+    groups = [sources] if circle else [(source,) for source in sources]
+    for group in groups:
         try:
-            run = _run(source, limits, duration, changes)
-            name = run.name if len(sources) == 1 else source   # two folders may have one name
+            runs = [(source, _run(source, limits, duration, changes)) for source in group]
+            run = runs[0][1]
+            name = group[0] if len(groups) > 1 else run.name    # two folders may have one name
             with progress_bar('checking'):
-                found.append(Checked(name, run, outcomes_of(limits, run)))
+                found.append(check_circle(limits, runs) if circle else check_run(name, run, limits, positioning))
         except (InputError, RecordingError) as error:
-            if len(sources) == 1:
+            if len(groups) == 1:
                 raise
-            refused.append(f'{source} cannot be checked: {error}')    # the others can
+            refused.append(f'{group[0]} cannot be checked: {error}')    # the others can
             continue
         if is_printed:
             show(check_report(found[-1]), flush=True)
-    failed = list(filter(None, (complaint(checked, limits_file) for checked in found)))
-    if is_printed and len(sources) > 1:
+    failed = list(filter(None, (complaint(checked, str(limits_file)) for checked in found)))
+    if is_printed and len(groups) > 1 and limits_file:
+        show([matrix(found)] if len(found) > 1 else [])
         show([f'{len(found) - len(failed)} of {len(sources)} runs keep {limits_file}'], flush=True)
     if refused:      # files without these runs would look like all is well
         raise RecordingError('; '.join([*refused, *failed]))
+    if plot is not None:
+        with whole(plot) as temporary:
+            draw_test(found[0], temporary)
     if json_file is not None:
         write_text(json_file, [json_text(checks_as_values(found), 2)])
     if junit is not None:
         write_text(junit, [junit_text(found)])
-    say_written(json_file, junit)
+    say_written(plot, json_file, junit)
     if failed:
         raise VerdictError('; '.join(failed))
+
+
+def _check_options(sources: Sequence[str], limits_file: str | None, circle: bool, radius: float | None,
+                   positioning: bool, plot: str | None) -> None:
+    if not circle and len(set(sources)) < len(sources):   # x goes the same way in both senses
+        raise click.UsageError('RUN_OR_SCENE: give each once.')
+    if circle and positioning:
+        raise click.UsageError('--circle and --positioning exclude each other.')
+    if not circle and (radius is not None or plot is not None):
+        raise click.UsageError('--radius and --plot are for --circle.')
+    if limits_file is None and not (circle or positioning):
+        raise click.UsageError("Missing option '--limits'.")
 
 
 def _run(source: str, limits: 'Limits', duration: float | None, changes: SceneChanges) -> 'Run':

@@ -1,0 +1,212 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip check --circle` and `--positioning`: runs of axes in, figures of ISO 230 and a verdict out."""
+
+import json
+import math
+import re
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from stickslip_sim.bags.topics import SLIDER_STATE, recorded_topics
+from stickslip_sim.check.circle import circle_outcomes, circular_test, paths_of
+from stickslip_sim.check.limits import NominalCircle, limits_of, outcomes_of, positions_of
+from stickslip_sim.core.errors import InputError
+from stickslip_sim.inputs import load_scene
+from stickslip_sim.recording import RunFacts, read_run, write_bag
+from stickslip_sim.recording.messages import Packer
+from stickslip_sim.recording.run import open_run, receipt_file
+from stickslip_sim.runs import SimulatedRun, simulate
+from stickslip_sim.scene import scene_from_values
+from stickslip_sim.scene.ros_yaml import read_yaml
+from tests.support.check_files import checked, limits_file, refused
+from tests.support.repository import ROOT
+from tests.support.tool import Capture
+
+RADIUS, RATE = 0.05, 5.0                   # m, rad/s
+MASS, STIFFNESS, DAMPING = 10.0, 1.0e5, 2.0e3
+X, Y = (str(ROOT / 'examples' / f'circle_{axis}.yaml') for axis in 'xy')
+CIRCLE, POSITIONS = (str(ROOT / 'examples' / f'{name}_limits.yaml') for name in ('circle', 'positioning'))
+DURATION = '7'
+
+
+def linear_axis(name: str, phase: float, stiffness: float = STIFFNESS, turns: float = 2.0) -> SimulatedRun:
+    """Return an axis without friction whose drive goes like a sine of the given phase, from its steady state on."""
+    values = {'axis.mass': MASS, 'axis.drive_stiffness': stiffness, 'axis.drive_damping': DAMPING,
+              'axis.normal_force': 0.0, 'drive.course': 'sine', 'drive.amplitude': RADIUS * RATE,
+              'drive.frequency': RATE / (2.0 * math.pi), 'drive.phase': phase}
+    scene = scene_from_values(values, name)
+    return simulate(scene, round(2.0 * math.pi * turns / RATE, 3), 0.001)
+
+
+def response(stiffness: float) -> complex:
+    """Return what the slider does with the motion of its drive."""
+    return (stiffness + 1j * RATE * DAMPING) / (stiffness - MASS * RATE**2 + 1j * RATE * DAMPING)
+
+
+def circle(*, sense: int = 1, of_y: float = STIFFNESS) -> list[tuple[str, SimulatedRun]]:
+    return [('x', linear_axis('x', math.pi)), ('y', linear_axis('y', sense * 0.5 * math.pi, of_y))]
+
+
+class TestRuns:
+    """The axes are linear: what is left of the start after a turn is exp(-100 s/s)."""
+
+    def test_equal_axes_make_a_circle_that_is_a_little_larger(self) -> None:
+        outcomes = {one.name: one.value for one in circle_outcomes(limits_of(read_yaml(
+            'limits: {radial_deviation: {max: 1.0}, circular_deviation: {max: 1.0}}')), paths_of(circle()))}
+        assert outcomes['radial_deviation'] == pytest.approx(RADIUS * (abs(response(STIFFNESS)) - 1.0), abs=1e-9)
+        assert outcomes['circular_deviation'] == pytest.approx(0.0, abs=1e-9)
+
+    def test_the_nominal_circle_is_that_of_the_drives_or_the_one_that_is_given(self) -> None:
+        paths = paths_of(circle())
+        assert circular_test(paths, NominalCircle()).nominal == pytest.approx((-RADIUS, 0.0, RADIUS), abs=1e-12)
+        given = circular_test(paths, NominalCircle(0.04, (-0.05, 0.001)))
+        assert given.nominal == (-0.05, 0.001, 0.04)
+        assert circular_test(paths, NominalCircle(radius=0.04)).nominal == pytest.approx((-RADIUS, 0.0, 0.04))
+
+    def test_both_senses_and_what_only_they_have(self) -> None:
+        soft = 0.5 * STIFFNESS
+        paths = paths_of([*circle(of_y=soft), *circle(of_y=soft, sense=-1)])
+        limits = limits_of(read_yaml('limits: {bidirectional_circular_deviation: {max: 1.0}, '
+                                     'mean_radial_deviation: {max: 1.0}, circular_deviation: {max: 1.0}}'))
+        both, mean, single = (float(one.value or 0.0) for one in circle_outcomes(limits, paths))
+        x, y = response(STIFFNESS), response(soft)
+        skew = np.angle(y / x)   # the axes lag by different times: opposite ellipses in both senses
+        axes = np.linalg.svd(RADIUS * np.array([[abs(x), 0.0], [abs(y) * math.sin(skew), abs(y) * math.cos(skew)]]))[1]
+        assert single == pytest.approx(axes[0] - axes[1], abs=1e-9)
+        assert both >= single
+        assert mean == pytest.approx(float(np.mean(axes)) - RADIUS, abs=1e-7)
+
+    def test_a_bag_of_two_axes_is_both(self, tmp_path: Path) -> None:
+        runs = circle()
+        topics = [*recorded_topics('/x'), *recorded_topics('/y')]
+        names = [topic.name for topic in topics]
+        writer = open_run(tmp_path / 'both', RunFacts.of(runs[0][1].scene), topics)
+        pack = Packer(SLIDER_STATE).pack
+        for step, samples in enumerate(zip(*(run.sample_rows() for _, run in runs))):
+            for axis, sample in zip('xy', samples):
+                data, place = pack(step * 10**6, step, sample), names.index(f'/{axis}/slider_state')
+                writer.write(place, data, step * 10**6, step * 10**6, step)
+        writer.close(receipt_file({}))
+        (path,), (expected,) = paths_of([('both', read_run(tmp_path / 'both'))]), paths_of(runs)
+        assert path.name == 'both:/x/slider_state, both:/y/slider_state'
+        assert (path.actual == expected.actual).all()
+        assert (path.commanded == expected.commanded).all()
+
+    def test_recorded_runs_are_as_simulated_ones(self, tmp_path: Path) -> None:
+        runs = circle()
+        for name, run in runs:
+            write_bag(tmp_path / name, RunFacts.of(run.scene), run.sample_rows(), run.events, {})
+        (path,) = paths_of([(name, read_run(tmp_path / name)) for name, _ in runs])
+        assert (path.actual == paths_of(runs)[0].actual).all()
+
+
+class TestTool:
+    def test_the_example_and_its_files(self, tmp_path: Path, capsys: Capture) -> None:
+        picture, xml, found = (tmp_path / name for name in ('c.png', 'c.xml', 'c.json'))
+        code, out, err = checked(capsys, '--circle', X, Y, '--duration', '14', '--limits', CIRCLE, '--plot', picture,
+                                 '--junit', xml, '--json', found)
+        assert (code, err) == (0, '')
+        text = (ROOT / 'docs' / 'check.md').read_text()
+        assert '\n'.join(out.splitlines()[1:-1]) in text
+        assert picture.read_bytes().startswith(b'\x89PNG')
+        suite = ElementTree.parse(xml).getroot()
+        assert (suite.attrib['tests'], suite.attrib['failures']) == ('3', '0')
+        circle = json.loads(found.read_text())['circle']
+        assert circle['nominal']['radius'] == pytest.approx(RADIUS, rel=1e-12)
+        assert [*circle['turns'][0]['quadrant_glitches']] == ['+x', '+y', '-x', '-y']
+
+    def test_friction_opens_the_circle_by_what_it_winds_up(self, capsys: Capture) -> None:
+        """In motion each axis is behind by 120 N over 170 N/µm, on one side of a reversal and on the other."""
+        code, out, _ = checked(capsys, '--circle', X, Y, '--duration', DURATION, '--json', '-')
+        (turn,) = json.loads(out)['circle']['turns']
+        behind = 0.003 * 4.0e4 / 1.7e8
+        assert code == 0
+        assert turn['smallest_radial_deviation'] == pytest.approx(-0.004 / 0.003 * behind, rel=0.2)
+        assert turn['circular_deviation'] > 2.0 * behind
+
+    def test_a_limit_that_fails(self, tmp_path: Path, capsys: Capture) -> None:
+        limits = limits_file(tmp_path, 'limits: {quadrant_glitch: {max: 1.0e-7}, circular_deviation: {max: 1.0e-3}}')
+        code, out, err = checked(capsys, '--circle', X, Y, '--duration', DURATION, '--limits', limits)
+        assert code == 3
+        assert out.splitlines()[-1] == 'FAILED: 1 of 2: quadrant_glitch'
+        assert re.search(r'quadrant_glitch .* FAIL  outwards at [+-][xy], counterclockwise', out)
+        assert err == f'stickslip: {X}, {Y} does not keep {limits}: quadrant_glitch\n'
+
+    @pytest.mark.parametrize(('arguments', 'words'), [
+        ([X, Y], ["Missing option '--limits'"]),
+        ([X, Y, '--circle', '--positioning'], ['exclude each other']),
+        ([X, Y, '--limits', CIRCLE, '--radius', '0.05'], ['--radius and --plot are for --circle']),
+        ([X, '--circle'], ['--circle = ', 'two axes: RUN_X RUN_Y, or a bag of both']),
+        ([X, Y, X, '--circle'], ['two axes: RUN_X RUN_Y']),
+        ([X, Y, '--circle', '--radius', '0.0'], ['--radius = 0.0', '> 0']),
+        ([X, Y, '--circle', '--limits', POSITIONS], ['positioning_accuracy', 'one of circular_deviation', 'by itself']),
+        ([X, '--limits', CIRCLE], ['circular_deviation', 'one axis', '--circle RUN_X RUN_Y']),
+        ([X, Y, '--circle', '--set', 'drive.amplitude=0.0'], ['--circle = ', 'a whole turn of 360 degrees']),
+    ])
+    def test_refusals(self, arguments: list[str], words: list[str], capsys: Capture) -> None:
+        line = refused(capsys, *arguments, '--duration', '1')
+        for word in words:
+            assert word in line
+
+    @pytest.mark.parametrize(('text', 'words'), [
+        ('circle: {radius: -1.0}', ['circle.radius = -1.0', '> 0']),
+        ('circle: {center: [0.0]}', ['circle.center = [0.0]', 'two numbers']),
+        ('circle: {diameter: 0.1}', ['circle.diameter', 'one of radius, center']),
+        ('limits: {mean_radial_deviation: {max: 1.0}}', ['mean_radial_deviation', 'counterclockwise', 'either sense',
+                                                         'OTHER_X']),
+        ('limits: {quadrant_glitch: {max: 1.0, window: {begin: first_command}}}', ['no command is known']),
+        ('limits: {timing: valid}', ['timing', 'real time']),
+    ])
+    def test_limits_that_say_nothing(self, text: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
+        line = refused(capsys, '--circle', X, Y, '--duration', DURATION, '--limits', limits_file(tmp_path, text))
+        for word in words:
+            assert word in line
+
+    def test_axes_at_other_times(self, tmp_path: Path, capsys: Capture) -> None:
+        slow = tmp_path / 'y.yaml'
+        slow.write_text(Path(Y).read_text() + '    time: {rate: 300.0}\n')
+        assert 'states of both axes at the same times' in refused(capsys, '--circle', X, slow, '--duration', '1')
+
+
+class TestPositioning:
+    def test_the_scene_and_its_limits(self, tmp_path: Path, capsys: Capture) -> None:
+        code, out, err = checked(capsys, 'ball_screw', '--positioning', '--duration', '30', '--limits', POSITIONS,
+                                 '--json', tmp_path / 'p.json')
+        assert (code, err) == (0, '')
+        assert 'ISO 230-2: 5 targets' in out
+        found = json.loads((tmp_path / 'p.json').read_text())['positioning']
+        assert [one['target'] for one in found['targets']] == pytest.approx([0.02, 0.11, 0.205, 0.29, 0.385])
+        assert found['reversal_error'] == max(abs(one['reversal']) for one in found['targets'])
+        assert 0.0 < found['positioning_repeatability_forward'] < 1e-9 < found['positioning_repeatability'] < 1e-6
+
+    def test_a_stair_by_hand(self) -> None:
+        """The slider of an axis without friction comes to its drive: what it lacks of a target is put there."""
+        scene = load_scene('positioning', {
+            'drive.course': 'position', 'drive.times': [0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5],
+            'drive.positions': [0.0, 0.01, 0.01, 0.02, 0.02, 0.01, 0.01, 0.0], 'drive.period': 4.0,
+            'axis.normal_force': 0.0, 'axis.drive_damping': 4.0e4})
+        run = simulate(scene, 8.0)
+        text = ('positioning: {targets: [0.0099, 0.02], dwell: 0.3, tolerance: 2.0e-4}\n'
+                'limits: {reversal_error: {max: 1.0}, mean_positioning_error: {max: 1.0}}')
+        with pytest.raises(InputError, match=r'targets = 0.02 .* 2 moves ended there from below and 0 from above'):
+            outcomes_of(limits_of(read_yaml(text)), run)
+        limits = limits_of(read_yaml(text.replace(', 0.02]', ']')))
+        (position,) = positions_of(limits, run)
+        assert (position.mean_forward, position.mean_backward) == pytest.approx((1e-4, 1e-4), abs=1e-5)
+        assert outcomes_of(limits, run)[0].value == abs(position.reversal)
+
+    @pytest.mark.parametrize(('text', 'duration', 'words'), [
+        ('limits: {positioning_accuracy: {max: 1.0}}', '14', ['positioning_accuracy.targets', 'twice or more']),
+        ('limits: {reversal_error: {max: 1.0}}', '4', ['reversal_error.targets = ', 'rests', 'check a longer run']),
+        ('limits: {reversal_error: {max: 1.0, dwell: 2.0}}', '14', ['0 rests', 'a shorter dwell']),
+        ('positioning: {dwell: 0.0}', '1', ['positioning.dwell = 0.0', '>= 1e-06']),
+        ('positioning: {target: 1.0}', '1', ['positioning.target', 'one of targets, dwell, tolerance']),
+    ])
+    def test_refusals(self, text: str, duration: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
+        line = refused(capsys, 'ball_screw', '--duration', duration, '--limits', limits_file(tmp_path, text))
+        for word in words:
+            assert word in line
