@@ -103,7 +103,7 @@ def _sensitivity(scene: Scene, run: Run) -> list[float] | None:
             exact,
             mass=exact.mass * (1 + EPSILON),
             stiffness=exact.stiffness * (1 - EPSILON),
-            normal=constant(mpf(exact.normal.values[0]) * (1 + EPSILON)),   # type: ignore[arg-type]
+            normal=constant(mpf(exact.normal.values[0]) * (1 + EPSILON)),
         )
     other = automaton.run(shifted, scene.duration, 40)
     if [(e.kind, e.direction) for e in other] != [(e.kind, e.direction) for e in run]:

@@ -40,6 +40,11 @@ class Checked(NamedTuple):
     outcomes: Sequence[LimitOutcome]
     test: IsoTest | None = None
 
+    @property
+    def passed(self) -> bool:
+        """Whether all limits were kept."""
+        return not failures(self.outcomes)
+
 
 def check_run(name: str, run: Run, limits: Limits, positioning: bool = False) -> Checked:
     """Return a run as it was checked, with all figures of `positioning`; raises InputError and RecordingError."""
@@ -52,11 +57,6 @@ def draw_test(checked: Checked, path: Path) -> None:
 
     assert isinstance(checked.test, CircularTest)
     plot_circle(checked.test, checked.name, path)
-
-    @property
-    def passed(self) -> bool:
-        """Whether all limits were kept."""
-        return not failures(self.outcomes)
 
 
 def verdict_line(checked: Checked) -> str:
