@@ -283,7 +283,7 @@ RUNS = st.lists(st.tuples(st.lists(st.integers(FRAME, FRAME + 60), min_size=1, m
                            st.sampled_from([None, 0, 40])), max_size=5)                        # another record behind
 
 
-@settings(max_examples=60)
+@settings(max_examples=60, deadline=None)
 @given(steps=RUNS)
 def test_messages_are_where_they_were_put(steps: list[tuple[list[int], int, int | None]]) -> None:
     records, end, places, channels, others = [], 0, [], [], []

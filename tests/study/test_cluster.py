@@ -12,7 +12,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import closing, suppress
 from pathlib import Path
 
 import pytest
@@ -68,6 +68,13 @@ class Cluster:
         addresses = {pid: address for address, pid in self.client.run(os.getpid).items()}
         return bool(self.client.processing().get(addresses.get(self.workers[worker].pid)))
 
+    def end_workers(self) -> None:
+        for process in self.workers:
+            process.kill()
+            process.communicate()
+        self.workers.clear()
+        wait_until(lambda: not self.client.scheduler_info()['workers'], 'a scheduler that knows it')
+
     def close(self) -> None:
         self.client.close()
         for process in (*self.workers, self.scheduler):
@@ -75,13 +82,17 @@ class Cluster:
             process.communicate()
 
 
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[Cluster]:
-    one = Cluster(tmp_path)
-    try:
+@pytest.fixture(scope='module')
+def shared_cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    with closing(Cluster(tmp_path_factory.mktemp('cluster'))) as one:
         yield one
-    finally:
-        one.close()
+
+
+@pytest.fixture
+def cluster(shared_cluster: Cluster) -> Iterator[Cluster]:
+    """A scheduler that goes on; its workers end with the test."""
+    yield shared_cluster
+    shared_cluster.end_workers()
 
 
 def test_a_worker_killed_in_the_middle_changes_no_bit(cluster: Cluster, tmp_path: Path) -> None:
@@ -112,14 +123,15 @@ def test_ctrl_c_keeps_what_is_done(cluster: Cluster, tmp_path: Path) -> None:
     wait_until(lambda: not cluster.is_at_work(0), 'a worker that is free again')
 
 
-def test_a_scheduler_that_goes_is_reported(cluster: Cluster, tmp_path: Path) -> None:
-    cluster.add_worker()
+def test_a_scheduler_that_goes_is_reported(tmp_path: Path) -> None:
     out = tmp_path / 'out'
-    process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', out,
-                      DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT='1s')
-    wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
-    cluster.scheduler.kill()
-    said, error = process.communicate(timeout=_PATIENCE)
+    with closing(Cluster(tmp_path)) as cluster:
+        cluster.add_worker()
+        process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', out,
+                          DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT='1s')
+        wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
+        cluster.scheduler.kill()
+        said, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 1
     assert (said, error.count('\n')) == ('', 1), error
     assert f'the scheduler {cluster.address} is gone' in error

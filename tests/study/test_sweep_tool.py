@@ -21,7 +21,7 @@ from stickslip_sim.study import Study, resources, table
 from stickslip_sim.study.folder import PARQUET, PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.study import study_of
 from stickslip_sim.study.table import read_columns, title_line
-from tests.support.tool import Capture, refused, restore_interrupt
+from tests.support.tool import Capture, answered, refused, restore_interrupt
 
 pytestmark = pytest.mark.slow
 
@@ -109,8 +109,8 @@ def test_workers_change_no_bit(tmp_path: Path, uninterrupted: bytes) -> None:
 
 
 @pytest.mark.parametrize('workers', ['1', '2'])
-def test_killed_in_the_middle_and_resumed_it_gives_the_same_file(workers: str, tmp_path: Path,
-                                                                 uninterrupted: bytes) -> None:
+def test_killed_in_the_middle_and_resumed_it_gives_the_same_file(workers: str, tmp_path: Path, uninterrupted: bytes,
+                                                                 capsys: Capture) -> None:
     out = tmp_path / 'out'
     process = started(*LONG, '--workers', workers, '--out', out)
     wait_for_lines(out / PARTIAL, process)
@@ -119,9 +119,8 @@ def test_killed_in_the_middle_and_resumed_it_gives_the_same_file(workers: str, t
     assert not (out / POINTS_TABLE).exists()
     with (out / PARTIAL).open('ab') as file:
         file.write(b'0.001,stick-sl')   # as a power failure would leave it
-    resumed = started(*LONG, '--out', out, '--resume')
-    said, error = resumed.communicate(timeout=60)
-    assert resumed.returncode == 0, error
+    code, said, error = answered(capsys, 'sweep', *LONG, '--out', out, '--resume')
+    assert code == 0, error
     assert ', 8000 of them run now' not in said
     assert (out / POINTS_TABLE).read_bytes() == uninterrupted
     assert not (out / PARTIAL).exists()
