@@ -10,11 +10,33 @@ import numpy as np
 import pytest
 
 from stickslip_sim.axis import Axis, Friction, InitialState
+from stickslip_sim.check.measures import KINDS
 from stickslip_sim.core.errors import SolverError
 from stickslip_sim.core.input_profile import table
 from stickslip_sim.core.time_grid import Instants
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode, Sample
-from stickslip_sim.figures.cycles import SWINGS_ON, Cycle, EventTally, ModeSpan, cycle_figures, mode_spans, summary
+from stickslip_sim.figures.catalogue import CATALOGUE, OF_A_CYCLE, head_of, label_of, unit_of
+from stickslip_sim.figures.cycles import (
+    SWINGS_ON,
+    Cycle,
+    EventTally,
+    ModeSpan,
+    Round,
+    cycle_figures,
+    mode_spans,
+    summary,
+)
+from stickslip_sim.figures.distance import (
+    cycle_difference,
+    event_difference,
+    first_difference,
+    first_mismatch,
+    pair,
+    seconds_between,
+    shift_between,
+)
+from stickslip_sim.figures.point_figures import FIGURES
+from stickslip_sim.figures.slips import events_of_slips
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.report.text import text_lines
@@ -256,3 +278,77 @@ def test_a_call_in_which_time_stands_ends(go_on: Callable[[Simulator], object]) 
             go_on(simulator)
         times.append(simulator.time.seconds)
     assert 0.0 < times[0] < times[1] < 0.001
+
+
+# Distances of two lists of events: what each of the meanings sees.
+
+DURATION = 3.0
+EVENTS = run_events(paper_axis(RIGID), 0.002, DURATION)
+
+
+def test_a_run_is_no_distance_from_itself() -> None:
+    assert first_difference(EVENTS, EVENTS) is None
+    assert first_mismatch(EVENTS, EVENTS) == len(EVENTS) > 8
+    assert shift_between(EVENTS, EVENTS, DURATION) == (0.0, 0.0, DURATION)
+    assert event_difference(EVENTS, EVENTS, DURATION) == 0.0
+    assert cycle_difference(*cycle_figures(EVENTS)[:1] * 2) == 0.0
+
+
+def test_an_event_that_is_late_differs_and_does_not_mismatch() -> None:
+    late = [*EVENTS]
+    late[3] = late[3]._replace(fraction=late[3].fraction + 1e-6)
+    assert (first_difference(EVENTS, late), first_mismatch(EVENTS, late)) == (3, len(EVENTS))
+    assert shift_between(EVENTS, late, DURATION).time == seconds_between(EVENTS[3], late[3]) > 0.9e-6
+
+
+def test_a_missing_event_ends_the_common_part_and_leaves_the_other_pairs() -> None:
+    short = [*EVENTS[:4], *EVENTS[5:]]
+    assert first_difference(EVENTS, short) == first_mismatch(EVENTS, short) == 4
+    assert shift_between(EVENTS, short, DURATION).until == EVENTS[4].time
+    points = [(event.time, event.position) for event in EVENTS]
+    assert pair(points, [*points[:4], *points[5:]], DURATION) == [(one, one) for one in points if one != points[4]]
+
+
+def test_a_cycle_that_one_run_alone_has_ends_the_common_part() -> None:
+    starts = [k for k, event in enumerate(EVENTS) if event.kind == EventKind.BREAKAWAY]
+    without = [*EVENTS[:starts[1]], *EVENTS[starts[2]:]]
+    assert [event.kind for event in without] == [event.kind for event in EVENTS[:len(without)]]
+    assert first_mismatch(EVENTS, without) == len(without)
+    assert shift_between(EVENTS, without, DURATION) == (0.0, 0.0, EVENTS[starts[1]].time)
+
+
+# The catalogue of figures: all that runs, studies and limits have, and how it is worded.
+
+NOT_FIGURES = {'second', 'fraction', 'kind', 'mode', 'direction'}   # instant and state
+
+
+@pytest.mark.parametrize('names', [Cycle._fields, Round._fields, FIGURES, KINDS, Event._fields, Sample._fields])
+def test_all_figures_are_in_the_catalogue_with_their_formula(names: tuple[str, ...]) -> None:
+    assert {*names} - NOT_FIGURES <= CATALOGUE.keys()
+    assert all(CATALOGUE[name].formula for name in {*names} - NOT_FIGURES)
+
+
+def test_labels_and_units() -> None:
+    assert [(head_of(name), unit_of(name)) for name in OF_A_CYCLE] == [
+        ('period', 's'), ('stick', 's'), ('slip', 's'), ('jump', 'm'), ('peak speed', 'm/s'),
+        ('break-away force', 'N'), ('drive force at arrest', 'N'), ('static coefficient', '')]
+    assert [label_of(name) for name in ('stick_time', 'stick_slip', 'begin')] == [
+        'stick time', 'stick-slip', 'break-away']
+
+
+# Slips by the speed alone: where they begin and end between two samples, and what is none.
+
+THRESHOLD = 0.5   # m/s
+
+
+@pytest.mark.parametrize('direction', [1, -1])
+def test_a_slip_begins_and_ends_where_its_speed_passes_the_threshold(direction: int) -> None:
+    """One slip of 4 m/s between two samples of 1 s; before it a swing of less than five times the threshold."""
+    speed = np.array([0.0, 2.0, 0.0, 0.0, 4.0, 4.0, 0.0, 0.0], dtype=np.float64)
+    still = dict.fromkeys(('position', 'drive_position', 'drive_force', 'friction_force'), np.zeros(len(speed)))
+    time = np.arange(8, dtype=np.float64)
+    events = events_of_slips({'time': time, 'velocity': direction * speed, **still}, THRESHOLD)
+    assert [(event.kind, event.direction, event.time) for event in events] == [
+        (EventKind.BREAKAWAY, direction, 3.125), (EventKind.DECELERATE, direction, 4.0),
+        (EventKind.STICK, direction, 5.875)]
+    assert [event.rest_time for event in events[:1]] == [3.125]
