@@ -25,7 +25,8 @@ _TYPES = {'Trigger': 'std_srvs', 'SetBool': 'std_srvs', 'Step': 'stickslip_msgs'
 _FIELD = re.compile(r'^([\w/]+(?:\[\])?) +(\w+)$', re.MULTILINE)
 _OF_OTHER_ROOMS = {   # attributes that no user needs: between rooms of the package, and not promised
     'Scene': {'inputs', 'make_rig', 'make_simulator', 'normal_force', 'rig', 'sources'},
-    'Simulator': {'checkpoint', 'event_counts', 'require_sound', 'restore', 'root_iterations', 'skip', 'take_samples'},
+    'Simulator': {'checkpoint', 'event_counts', 'require_sound', 'restore', 'root_iterations', 'skip', 'step',
+                  'take_samples'},
 }
 _CONSTANT = re.compile(r'^\w+ +([A-Z][A-Z0-9_]*) *= *(-?\d+)', re.MULTILINE)
 

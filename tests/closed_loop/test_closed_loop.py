@@ -14,6 +14,7 @@ from scipy.linalg import expm
 
 import stickslip_sim as stickslip
 from stickslip_sim.check.verification import verify
+from stickslip_sim.closed_loop import ClosedLoopRun
 from stickslip_sim.controllers import Moves
 from stickslip_sim.controllers.own_controller import Measurement
 from stickslip_sim.core.errors import ControllerError, InputError
@@ -69,7 +70,7 @@ def test_without_friction_it_is_the_linear_recursion(rate: float | None, delay: 
 
 class TestWhatIsTold:
     def told(self, changes: dict[str, Any], duration: float = 0.6, **options: Any
-             ) -> tuple[list[tuple[float, Measurement]], stickslip.ClosedLoopRun]:
+             ) -> tuple[list[tuple[float, Measurement]], ClosedLoopRun]:
         found: list[tuple[float, Measurement]] = []
 
         def listening(time: float, measured: Measurement) -> float:
@@ -152,7 +153,7 @@ def test_the_drive_keeps_its_limits() -> None:
 class TestSetpoints:
     TIMES = np.arange(0.0, 0.5, 0.001)
 
-    def run(self, given: Any) -> stickslip.ClosedLoopRun:
+    def run(self, given: Any) -> ClosedLoopRun:
         return stickslip.close_loop(proportional, scene({}), 0.4, setpoint=given)
 
     def test_all_kinds_are_the_same(self, tmp_path: Path) -> None:
@@ -255,7 +256,7 @@ class TestRefused:
 
 
 @pytest.fixture(scope='module')
-def noisy(tmp_path_factory: pytest.TempPathFactory) -> tuple[stickslip.ClosedLoopRun, RecordedRun]:
+def noisy(tmp_path_factory: pytest.TempPathFactory) -> tuple[ClosedLoopRun, RecordedRun]:
     run = stickslip.close_loop(following, scene(NOISY), 1.0, setpoint=lambda time: 0.003 * time)
     folder = tmp_path_factory.mktemp('loop') / 'run'
     run.save(folder)
@@ -263,14 +264,14 @@ def noisy(tmp_path_factory: pytest.TempPathFactory) -> tuple[stickslip.ClosedLoo
 
 
 class TestBag:
-    def test_is_made_again_step_by_step(self, noisy: tuple[stickslip.ClosedLoopRun, RecordedRun]) -> None:
+    def test_is_made_again_step_by_step(self, noisy: tuple[ClosedLoopRun, RecordedRun]) -> None:
         run, recorded = noisy
         verdict = verify(recorded)
         events = [event for event in run.events if event.kind != stickslip.EventKind.KNOT]
         assert (verdict.difference, verdict.steps, verdict.events) == (None, 1001, len(events))
         assert verdict.events > 5
 
-    def test_is_the_run(self, noisy: tuple[stickslip.ClosedLoopRun, RecordedRun]) -> None:
+    def test_is_the_run(self, noisy: tuple[ClosedLoopRun, RecordedRun]) -> None:
         run, recorded = noisy
         assert recorded.scene == run.scene
         assert run.scene.values['joint_interface.enabled'] is True
@@ -286,7 +287,7 @@ class TestBag:
         assert recorded.receipt['results'] == run.receipt['results']
         assert recorded.receipt['controller'] == {'name': 'following', 'rate': 1000.0}
 
-    def test_has_the_setpoint(self, noisy: tuple[stickslip.ClosedLoopRun, RecordedRun]) -> None:
+    def test_has_the_setpoint(self, noisy: tuple[ClosedLoopRun, RecordedRun]) -> None:
         run, recorded = noisy
         for name in ('time', 'position', 'velocity'):
             assert recorded.setpoint[name].tolist() == run.setpoint[name].tolist()
@@ -297,7 +298,7 @@ class TestBag:
         assert verify(read_run(tmp_path / 'run')).difference is None
         assert read_run(tmp_path / 'run').setpoint == {}
 
-    def test_an_existing_folder_is_not_touched(self, noisy: tuple[stickslip.ClosedLoopRun, RecordedRun], tmp_path: Path
+    def test_an_existing_folder_is_not_touched(self, noisy: tuple[ClosedLoopRun, RecordedRun], tmp_path: Path
                                                ) -> None:
         (tmp_path / 'note').touch()
         with pytest.raises(stickslip.RecordingError):
@@ -306,21 +307,21 @@ class TestBag:
 
 
 class TestLikeEveryOtherRun:
-    def test_limits(self, noisy: tuple[stickslip.ClosedLoopRun, RecordedRun], tmp_path: Path) -> None:
+    def test_limits(self, noisy: tuple[ClosedLoopRun, RecordedRun], tmp_path: Path) -> None:
         run, recorded = noisy
         limits = tmp_path / 'limits.yaml'
         limits.write_text('limits:\n  peak_speed: {max: 1.0, window: {begin: first_command}}\n'
                           '  overshoot: {max: 1.0e-3, target: 0.003}\n  following_error: {max: 1.0}\n')
         checked = run.check(limits)
         assert checked.passed
-        recorded_outcomes = stickslip.ClosedLoopRun.check(recorded, str(limits)).outcomes  # type: ignore[arg-type]
+        recorded_outcomes = ClosedLoopRun.check(recorded, str(limits)).outcomes  # type: ignore[arg-type]
         assert recorded_outcomes == checked.outcomes
         error = np.abs(run.setpoint['position'] - run.samples['position'])
         assert checked.outcomes[-1].value == error.max()
         limits.write_text('limits: {peak_speed: {max: 1.0e-3}}\n')
         assert not run.check(limits).passed
 
-    def test_picture_frame_and_cycles(self, noisy: tuple[stickslip.ClosedLoopRun, RecordedRun], tmp_path: Path) -> None:
+    def test_picture_frame_and_cycles(self, noisy: tuple[ClosedLoopRun, RecordedRun], tmp_path: Path) -> None:
         run, recorded = noisy
         run.plot(tmp_path / 'run.svg')
         recorded.plot(tmp_path / 'recorded.svg')
@@ -330,7 +331,11 @@ class TestLikeEveryOtherRun:
         pytest.importorskip('pandas')
         assert len(run.frame()) == 1001
 
-    def test_says_what_drove_it(self, noisy: tuple[stickslip.ClosedLoopRun, RecordedRun]) -> None:
+    def test_no_error_estimate(self, noisy: tuple[ClosedLoopRun, RecordedRun]) -> None:
+        with pytest.raises(InputError, match='must be of a scene alone'):
+            stickslip.error_estimate(noisy[0])
+
+    def test_says_what_drove_it(self, noisy: tuple[ClosedLoopRun, RecordedRun]) -> None:
         assert noisy[0].source == 'simulated for 1 s with following in the loop'
 
 

@@ -70,7 +70,6 @@ TIMING = Topic('timing', 'stickslip_msgs/msg/StepTiming', _STATE)
 PARAMETER_EVENTS = Topic('/parameter_events', 'rcl_interfaces/msg/ParameterEvent', QosProfile(1000))
 CLOCK = Topic('/clock', 'rosgraph_msgs/msg/Clock', QosProfile(1))
 JOINT_STATES = Topic('joint_states', 'sensor_msgs/msg/JointState', _STATE)
-SETPOINT = Topic('setpoint', 'sensor_msgs/msg/JointState', _STATE)    # where the slider should be, and how fast
 JOINT_COMMANDS = Topic('joint_commands', 'sensor_msgs/msg/JointState', _COMMAND, _KEPT)
 DIAGNOSTICS = Topic('/diagnostics', 'diagnostic_msgs/msg/DiagnosticArray', _STATE)
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..bags.message_layout import FixedLayout, Layout
 from ..bags.schemas import MessageCodec, flat_layout
-from ..bags.topics import SETPOINT, Topic
+from ..bags.topics import JOINT_STATES, Topic
 from ..core.time_grid import NANOSECONDS
 from ..core.types import Event, Sample
 from ..core.version import __version__
@@ -45,6 +45,11 @@ class Packer:
     def pack(self, stamp_ns: int, step: int, output: Sample | Event) -> bytes:
         """Return the CDR bytes of the message."""
         return self._layout.pack(stamp_ns, step, *self._numbers(output))
+
+
+# Where the slider should be, and how fast, in the bag of a closed loop.
+
+SETPOINT = JOINT_STATES._replace(name='setpoint')
 
 
 def slider_joint(prefix: str) -> str:

@@ -77,7 +77,7 @@ def write_steps(folder: Path | str, facts: RunFacts, samples: Columns, orders: '
     A `setpoint` for the `joint` of the slider is written too, if there is one.  A bag that was begun vanishes on any
     error.  Raises RecordingError.
     """
-    bag, steps = OfflineBag(folder, facts, [topics.SETPOINT] if setpoint else []), StepMessages(joint)
+    bag, steps = OfflineBag(folder, facts, [messages.SETPOINT] if setpoint else []), StepMessages(joint)
     try:
         others = steps.of_orders(orders, Instants(samples['second'], samples['fraction']).nanoseconds())
         for first in range(0, len(samples['time']), _BLOCK):

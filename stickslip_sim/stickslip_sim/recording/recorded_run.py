@@ -16,7 +16,6 @@ from ..bags.topics import (
     MODE_EVENT,
     PARAMETER_EVENTS,
     RIG_EVENT,
-    SETPOINT,
     SLIDER_STATE,
     TIMING,
     Topic,
@@ -31,7 +30,7 @@ from ..runs.samples import MOST_HELD, joined
 from ..scene import Scene
 from ..simulation import RigEventKind
 from ..simulation.step_result import Mark, TimedRigEvent, marks_of_events, marks_of_faults
-from .messages import setpoint_layout, slider_joint
+from .messages import SETPOINT, setpoint_layout, slider_joint
 from .reader import EVENT_FIELDS, Bag
 from .run_outline import (
     LATE_FIELDS,

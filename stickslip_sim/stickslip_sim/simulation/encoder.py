@@ -96,20 +96,17 @@ class _Sampled:
     def read(self, position: float, velocity: float, shift: float = 0.0, is_frozen: bool = False
              ) -> tuple[float, float]:
         """Return position and velocity; before the first reading all readings were as that."""
+        settings, readings = self._settings, self._readings
         self._delayed.append(position)
-        reading = self._counted(self._delayed[0] + self._settings.offset + shift + self._next_noise())
-        if is_frozen and self._readings:
-            reading = self._readings[-1]
-        self._readings.append(reading)
-        return reading, (reading - self._readings[0]) * self._per_second
-
-    def _counted(self, position: float) -> float:
-        resolution = self._settings.resolution
-        return resolution * math.floor(position / resolution + 0.5) if resolution else position
+        reading = self._delayed[0] + settings.offset + shift + (self._next_noise() if settings.noise else 0.0)
+        if resolution := settings.resolution:
+            reading = resolution * math.floor(reading / resolution + 0.5)
+        if is_frozen and readings:
+            reading = readings[-1]
+        readings.append(reading)
+        return reading, (reading - readings[0]) * self._per_second
 
     def _next_noise(self) -> float:
-        if not self._settings.noise:
-            return 0.0
         for number in self._waiting_noise:
             return self._settings.noise * number
         self._waiting_noise = iter(self._noise.standard_normal(_BLOCK).tolist())

@@ -191,8 +191,7 @@ class Rig:
         if plant.is_changed:
             plant.act()
         rig_events, self._rig_events = self._rig_events, []
-        events = simulator.advance(self._grid.instant(step))
-        row = simulator.sample_row()
+        events, row = simulator.step(self._grid.instant(step))
         self.step = step
         measured = (self._encoder.measure(row[_X], row[_V], row[_S], row[_DRIVE], faults.effect) if self._measures
                     else None)

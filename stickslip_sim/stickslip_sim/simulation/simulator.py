@@ -93,8 +93,17 @@ class Simulator:
         Raises InputError when it is before or no time, SolverError when the events do not let time go on; the state is
         then that of the last event.
         """
+        return self._advance(to, self._set_out(to))
+
+    def step(self, to: Instant) -> tuple[list[Event], list[float]]:
+        """Bring the state to a time after the present one, which is not checked; return events and numbers of the sample."""
+        if self._inputs.are_commanded:
+            self._solved.obey(self._waiting)
+        events, self._waiting = self._waiting, []
+        return self._advance(to, events), self._solved.row()
+
+    def _advance(self, to: Instant, events: list[Event]) -> list[Event]:
         second, fraction = to
-        events = self._set_out(to)
         if self._inputs.until <= second + fraction:
             self._solved.enter_pieces(second + fraction, events)
         self._solved.advance(to, events)
@@ -153,12 +162,6 @@ class Simulator:
         if self._inputs.are_commanded:
             self._solved.obey(self._waiting)
         return self._solved.sample()
-
-    def sample_row(self) -> list[float]:
-        """Return the numbers of `sample`, in its order."""
-        if self._inputs.are_commanded:
-            self._solved.obey(self._waiting)
-        return self._solved.row()
 
     def checkpoint(self) -> dict[str, Any]:
         """Return the state as plain data, from which a simulator of the same scene goes on to the last bit."""
