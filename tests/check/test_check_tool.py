@@ -10,8 +10,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from stickslip_sim.check.measures import KINDS
+from stickslip_sim.check.measures import CIRCLE_KINDS, KINDS
 from stickslip_sim.cli.main import run
+from stickslip_sim.figures.positioning import PositioningFigures
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import OfflineBag, RunFacts, open_bag
 from stickslip_sim.recording.offline_bag import StepMessages
@@ -109,10 +110,15 @@ class TestOutcome:
         assert code == 0
         assert out in text
         assert Path(EXAMPLE).read_text() in text
+        of_iso = {*CIRCLE_KINDS, *PositioningFigures._fields}
         for kind in KINDS.values():
-            (row,) = re.findall(rf'^\| `{kind.name}` \|.*$', text, re.MULTILINE)
-            assert all(f'`{setting.name}`' in row for setting in kind.settings)
-            assert f'| {kind.unit} |' in row
+            if kind.name not in of_iso:
+                (row,) = re.findall(rf'^\| (?:`\w+`, )?`{kind.name}`(?:, `\w+`)? \|.*$', text, re.MULTILINE)
+                assert all(f'`{setting.name}`' in row for setting in kind.settings)
+                assert f'| {kind.unit} |' in row
+        for name in of_iso:
+            way, plain = name.rpartition('_')[2], re.sub('_(forward|backward)$', '', name)
+            assert re.search(rf'^\|.*`{plain}`.*{f"_{way}`" if plain != name else ""}.*\|$', text, re.MULTILINE)
 
 
 class TestSeveral:

@@ -11,10 +11,13 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from benchmarks.glitch_map import CircleAt, glitches
+from examples.circle import circle as circle_in_process
 from stickslip_sim.bags.topics import SLIDER_STATE, recorded_topics
 from stickslip_sim.check.circle import circle_outcomes, circular_test, paths_of
 from stickslip_sim.check.limits import NominalCircle, limits_of, outcomes_of, positions_of
 from stickslip_sim.core.errors import InputError
+from stickslip_sim.figures.circular import CircularTest
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import RunFacts, read_run, write_bag
 from stickslip_sim.recording.messages import Packer
@@ -31,6 +34,7 @@ MASS, STIFFNESS, DAMPING = 10.0, 1.0e5, 2.0e3
 X, Y = (str(ROOT / 'examples' / f'circle_{axis}.yaml') for axis in 'xy')
 CIRCLE, POSITIONS = (str(ROOT / 'examples' / f'{name}_limits.yaml') for name in ('circle', 'positioning'))
 DURATION = '7'
+GLITCH, REVERSAL = (f'limits: {{{name}: {{max: 1.0}}}}' for name in ('quadrant_glitch', 'reversal_error'))
 
 
 def linear_axis(name: str, phase: float, stiffness: float = STIFFNESS, turns: float = 2.0) -> SimulatedRun:
@@ -128,6 +132,19 @@ class TestTool:
         assert turn['smallest_radial_deviation'] == pytest.approx(-0.004 / 0.003 * behind, rel=0.2)
         assert turn['circular_deviation'] > 2.0 * behind
 
+    def test_the_map_of_glitches_has_that_of_the_example(self, capsys: Capture) -> None:
+        """From a single axis, at fewer times."""
+        (glitch,) = glitches([CircleAt(RADIUS, 0.05, 0.0)])
+        _, out, _ = checked(capsys, '--circle', X, Y, '--duration', '14', '--json', '-')
+        (turn,) = json.loads(out)['circle']['turns']
+        assert glitch == pytest.approx(turn['quadrant_glitches']['+x'], rel=0.02)
+
+    def test_the_example_in_process(self) -> None:
+        found = circle_in_process('ball_screw', RADIUS, 0.1)
+        assert isinstance(found.test, CircularTest)
+        assert found.test.is_bidirectional
+        assert found.test.nominal.radius == pytest.approx(RADIUS, rel=1e-9)
+
     def test_a_limit_that_fails(self, tmp_path: Path, capsys: Capture) -> None:
         limits = limits_file(tmp_path, 'limits: {quadrant_glitch: {max: 1.0e-7}, circular_deviation: {max: 1.0e-3}}')
         code, out, err = checked(capsys, '--circle', X, Y, '--duration', DURATION, '--limits', limits)
@@ -153,9 +170,9 @@ class TestTool:
             assert word in line
 
     @pytest.mark.parametrize(('text', 'words'), [
-        ('circle: {radius: -1.0}', ['circle.radius = -1.0', '> 0']),
-        ('circle: {center: [0.0]}', ['circle.center = [0.0]', 'two numbers']),
-        ('circle: {diameter: 0.1}', ['circle.diameter', 'one of radius, center']),
+        (f'circle: {{radius: -1.0}}\n{GLITCH}', ['circle.radius = -1.0', '> 0']),
+        (f'circle: {{center: [0.0]}}\n{GLITCH}', ['circle.center = [0.0]', 'two numbers']),
+        (f'circle: {{diameter: 0.1}}\n{GLITCH}', ['circle.diameter', 'one of radius, center']),
         ('limits: {mean_radial_deviation: {max: 1.0}}', ['mean_radial_deviation', 'counterclockwise', 'either sense',
                                                          'OTHER_X']),
         ('limits: {quadrant_glitch: {max: 1.0, window: {begin: first_command}}}', ['no command is known']),
@@ -203,8 +220,8 @@ class TestPositioning:
         ('limits: {positioning_accuracy: {max: 1.0}}', '14', ['positioning_accuracy.targets', 'twice or more']),
         ('limits: {reversal_error: {max: 1.0}}', '4', ['reversal_error.targets = ', 'rests', 'check a longer run']),
         ('limits: {reversal_error: {max: 1.0, dwell: 2.0}}', '14', ['0 rests', 'a shorter dwell']),
-        ('positioning: {dwell: 0.0}', '1', ['positioning.dwell = 0.0', '>= 1e-06']),
-        ('positioning: {target: 1.0}', '1', ['positioning.target', 'one of targets, dwell, tolerance']),
+        (f'positioning: {{dwell: 0.0}}\n{REVERSAL}', '1', ['positioning.dwell = 0.0', '>= 1e-06']),
+        (f'positioning: {{target: 1.0}}\n{REVERSAL}', '1', ['positioning.target', 'one of targets, dwell, tolerance']),
     ])
     def test_refusals(self, text: str, duration: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
         line = refused(capsys, 'ball_screw', '--duration', duration, '--limits', limits_file(tmp_path, text))

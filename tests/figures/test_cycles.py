@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from stickslip_sim.axis import Axis, Friction, InitialState
-from stickslip_sim.check.measures import KINDS
+from stickslip_sim.check.measures import CIRCLE_KINDS, KINDS
 from stickslip_sim.core.errors import SolverError
 from stickslip_sim.core.input_profile import table
 from stickslip_sim.core.time_grid import Instants
@@ -322,7 +322,8 @@ def test_a_cycle_that_one_run_alone_has_ends_the_common_part() -> None:
 NOT_FIGURES = {'second', 'fraction', 'kind', 'mode', 'direction'}   # instant and state
 
 
-@pytest.mark.parametrize('names', [Cycle._fields, Round._fields, FIGURES, KINDS, Event._fields, Sample._fields])
+@pytest.mark.parametrize('names', [Cycle._fields, Round._fields, FIGURES, KINDS, CIRCLE_KINDS, Event._fields,
+                                   Sample._fields])
 def test_all_figures_are_in_the_catalogue_with_their_formula(names: tuple[str, ...]) -> None:
     assert {*names} - NOT_FIGURES <= CATALOGUE.keys()
     assert all(CATALOGUE[name].formula for name in {*names} - NOT_FIGURES)

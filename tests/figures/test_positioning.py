@@ -53,3 +53,15 @@ def test_a_single_approach_has_means_and_no_scatter() -> None:
     found = figures_of(((5.0,), (1.0,)), ((6.0, 6.0), (1.0, 1.0)))
     assert (found.reversal_error, found.systematic_positioning_error) == pytest.approx((5.0 * MICRO, 5.0 * MICRO))
     assert all(map(math.isnan, found[:6]))
+
+
+def test_both_ways_are_no_better_than_either() -> None:
+    scatter = np.random.default_rng(3).normal(size=(4, 2, 5))
+    found = figures_of(*((tuple(up), tuple(down)) for up, down in scatter.tolist()))
+    for both, forward, backward in (
+            (found.positioning_accuracy, found.positioning_accuracy_forward, found.positioning_accuracy_backward),
+            (found.positioning_repeatability, found.positioning_repeatability_forward,
+             found.positioning_repeatability_backward),
+            (found.systematic_positioning_error, found.systematic_positioning_error_forward,
+             found.systematic_positioning_error_backward)):
+        assert both >= max(forward, backward)

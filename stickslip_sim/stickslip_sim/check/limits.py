@@ -225,13 +225,12 @@ def load_limits(path: str) -> Limits:
 def limits_of(document: object, folder: Path = Path()) -> Limits:
     """Return the limits of a document as YAML gives it, whose files are in a folder; raises InputError."""
     given = section('file', document, _SECTIONS, CHECK_PAGE)
-    entries = given.get('limits', {} if {'circle', 'positioning'} & set(given) else None)
-    if not isinstance(entries, Mapping) or not (entries or 'limits' not in given):
+    entries = given.get('limits')
+    if not isinstance(entries, Mapping) or not entries:
         raise InputError('limits', entries, 'a section with at least one limit', 'for example sticks: {max: 3}')
     window = window_of('window', given.get('window'), WHOLE_RUN)
-    defaults = {'target': _checked(TARGET, '', given['target'])} if 'target' in given else {}
     positioning = _settings('positioning', given, _POSITIONING)
-    defaults = {**positioning, **defaults}
+    defaults = {**positioning, **({'target': _checked(TARGET, '', given['target'])} if 'target' in given else {})}
     for name in entries:
         _NAME.checked(name)
     return Limits(tuple(_limit(name, entry, window, defaults) for name, entry in entries.items()
@@ -384,8 +383,9 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     outcomes = [one.outcome() if isinstance(one, _Open) else one for one in found]
     for outcome in outcomes:
         if outcome.value is not None and math.isnan(outcome.value):
-            raise RecordingError(f'{run.name}: {outcome.name} needs {" and ".join(unmeasured(run))}, which was not '
-                                 'measured; leave this limit out, or import that column too')
+            needed = unmeasured(run, outcome.limit.kind.needs if outcome.limit else ())
+            raise RecordingError(f'{run.name}: {outcome.name} needs {" and ".join(needed)}, which was not measured; '
+                                 'leave this limit out, or import that column too')
     if limits.timing and timing:
         outcomes.append(LimitOutcome(TIMING_LIMIT, None, bool(timing.valid), None, timing.verdict))
     return outcomes

@@ -7,7 +7,7 @@ themselves.  The drive is known at the samples.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
@@ -29,7 +29,7 @@ from ..figures.positioning import (
     positioning_figures,
 )
 from ..scene import Parameter
-from .observed_run import MotionBlock, MotionSpan, Points
+from .observed_run import MotionBlock, MotionSpan, Points, held
 
 
 class MeasuredFigure(NamedTuple):
@@ -72,21 +72,37 @@ class _Largest:
         return MeasuredFigure(self.value, f'at t = {self.time:.6g} s')
 
 
-class LargestSize(LimitMeasure):
-    """The largest size in a column of a block, which `column` returns with its times."""
+class LargestOf(LimitMeasure):
+    """The largest value that `_values` makes of a block, with its time."""
 
-    def __init__(self, span: MotionSpan, column: Callable[[MotionBlock], tuple[Numbers, Numbers]]) -> None:
+    def __init__(self, span: MotionSpan) -> None:
         super().__init__(span)
-        self._column, self._largest = column, _Largest()
+        self._largest = _Largest()
 
     def take(self, block: MotionBlock) -> None:
         """Take the next block."""
-        values, times = self._column(block)
-        self._largest.take(np.abs(values), times)
+        if len(block.points.time):
+            self._largest.take(*self._values(block))
+
+    def _values(self, block: MotionBlock) -> tuple[Numbers, Numbers]:
+        """Return values and their times."""
+        raise NotImplementedError
 
     def figure(self) -> MeasuredFigure:
         """Return what all blocks came to."""
         return self._largest.figure
+
+
+class LargestSize(LargestOf):
+    """The largest size in a column of a block, which `column` returns with its times."""
+
+    def __init__(self, span: MotionSpan, column: Callable[[MotionBlock], tuple[Numbers, Numbers]]) -> None:
+        super().__init__(span)
+        self._column = column
+
+    def _values(self, block: MotionBlock) -> tuple[Numbers, Numbers]:
+        values, times = self._column(block)
+        return np.abs(values), times
 
 
 class EndPositionError(LimitMeasure):
@@ -223,242 +239,157 @@ class LimitCycleAmplitude(LimitMeasure):
         return MeasuredFigure(highest + lowest, f'over {count} cycle{"s" if count > 1 else ""}')
 
 
-class _Between:
-    """Joins each block of samples to the last sample of the one before, so that nothing between two is lost."""
+class RootMeanSquare(LargestSize):
+    """The root of the mean square of a column over the samples."""
 
-    def __init__(self) -> None:
-        self._last: tuple[Numbers, ...] = ()
-
-    def joined(self, *columns: Numbers) -> tuple[Numbers, ...]:
-        """Return columns of a block behind the last row of those before."""
-        if self._last:
-            columns = tuple(np.append(last, column) for last, column in zip(self._last, columns))
-        if len(columns[0]):
-            self._last = tuple(column[-1:] for column in columns)
-        return columns
-
-
-class RootMeanSquare(LimitMeasure):
-    """The root of the mean square over time of a column, which is linear between the samples."""
-
-    def __init__(self, span: MotionSpan, column: Callable[[MotionBlock], Numbers]) -> None:
-        super().__init__(span)
-        self._column, self._between, self._square, self._time = column, _Between(), 0.0, 0.0
-        self._single = math.nan     # of one sample, if no other comes
+    def __init__(self, span: MotionSpan, column: Callable[[MotionBlock], tuple[Numbers, Numbers]]) -> None:
+        super().__init__(span, column)
+        self._square, self._count = 0.0, 0
 
     def take(self, block: MotionBlock) -> None:
         """Take the next block."""
-        time, values = self._between.joined(block.time, self._column(block))
-        if len(time):
-            self._single = float(values[0])
-        lengths, low, high = np.diff(time), values[:-1], values[1:]
-        self._square += float((lengths * (low * low + low * high + high * high)).sum()) / 3.0
-        self._time += float(lengths.sum())
+        values, _ = self._column(block)
+        self._square, self._count = self._square + float(values @ values), self._count + len(values)
 
     def figure(self) -> MeasuredFigure:
         """Return what all blocks came to."""
-        return MeasuredFigure(math.sqrt(self._square / self._time) if self._time else abs(self._single))
+        root = math.sqrt(self._square / self._count)
+        return MeasuredFigure(float(f'{root:.13g}'))   # the digits behind are those of how the blocks were cut
 
 
-class CommandRate(LimitMeasure):
-    """The largest rate of the drive velocity between two samples, m/s²; or, with `rms`, that of all of them."""
+class VelocityRipple(LimitMeasure):
+    """The largest velocity less the smallest, m/s."""
 
-    def __init__(self, span: MotionSpan, rms: bool) -> None:
+    def __init__(self, span: MotionSpan) -> None:
         super().__init__(span)
-        self._between, self._largest, self._square, self._time = _Between(), _Largest(), 0.0, 0.0
-        self._is_rms = rms
+        self._both = {sense: _Largest() for sense in (-1.0, 1.0)}
 
     def take(self, block: MotionBlock) -> None:
         """Take the next block."""
-        time, command = self._between.joined(block.time, block.command)
-        lengths = np.diff(time)
-        rates = np.diff(command) / lengths
-        self._largest.take(np.abs(rates), time[1:])
-        self._square, self._time = self._square + float((rates**2 * lengths).sum()), self._time + float(lengths.sum())
+        for sense, largest in self._both.items():
+            largest.take(sense * block.points.velocity, block.points.time)
 
     def figure(self) -> MeasuredFigure:
         """Return what all blocks came to."""
-        if not self._time:
-            return MeasuredFigure(0.0, 'a single state')
-        return MeasuredFigure(math.sqrt(self._square / self._time)) if self._is_rms else self._largest.figure
+        return MeasuredFigure(sum(largest.value for largest in self._both.values()))
 
 
-class SpeedRange(LimitMeasure):
-    """The largest less the smallest velocity, m/s; or, with `lowest`, the smallest speed."""
+class LowestSpeed(LargestOf):
+    """The smallest speed, m/s."""
 
-    def __init__(self, span: MotionSpan, lowest: bool) -> None:
-        super().__init__(span)
-        self._is_lowest, self._highest, self._least = lowest, _Largest(), _Largest()
-
-    def take(self, block: MotionBlock) -> None:
-        """Take the next block."""
-        velocity = np.abs(block.points.velocity) if self._is_lowest else block.points.velocity
-        self._highest.take(velocity, block.points.time)
-        self._least.take(-velocity, block.points.time)
+    def _values(self, block: MotionBlock) -> tuple[Numbers, Numbers]:
+        return -np.abs(block.points.velocity), block.points.time
 
     def figure(self) -> MeasuredFigure:
         """Return what all blocks came to."""
-        if self._is_lowest:
-            return MeasuredFigure(-self._least.value + 0.0, self._least.figure.remark)
-        return MeasuredFigure(self._highest.value + self._least.value)
+        return super().figure()._replace(value=abs(self._largest.value))
 
 
-class Standstill(LimitMeasure):
-    """The longest time in which the slider is slower than `speed` (m/s), s; velocities are linear between points."""
+class Standstill(LargestOf):
+    """The longest time from a sample or transition to a later one with a speed below `speed` (m/s) at them all, s."""
 
     def __init__(self, span: MotionSpan, speed: float) -> None:
         super().__init__(span)
-        self._speed, self._between = speed, _Between()
-        self._since, self._longest = math.nan, (0.0, math.nan)   # s: length and begin
+        self._speed, self._since, self._was_slow = speed, math.nan, False
 
-    def take(self, block: MotionBlock) -> None:
-        """Take the next block."""
-        is_first = math.isnan(self._longest[1])
-        time, velocity = self._between.joined(block.points.time, np.abs(block.points.velocity))
-        if not len(time):
-            return
-        if is_first:
-            self._longest = 0.0, float(time[0])
-            self._since = float(time[0]) if velocity[0] < self._speed else math.nan
-        slow = velocity < self._speed
-        for row in np.flatnonzero(slow[1:] != slow[:-1]).tolist():
-            share = (self._speed - velocity[row]) / (velocity[row + 1] - velocity[row])
-            at = float(time[row] + share * (time[row + 1] - time[row]))
-            if slow[row]:
-                self._end(at)
-            self._since = math.nan if slow[row] else at
-        if slow[-1]:
-            self._end(float(time[-1]))
-
-    def _end(self, time: float) -> None:
-        self._longest = max(self._longest, (time - self._since, self._since))
+    def _values(self, block: MotionBlock) -> tuple[Numbers, Numbers]:
+        time, is_slow = block.points.time, np.abs(block.points.velocity) < self._speed
+        since = held(is_slow & ~np.append(self._was_slow, is_slow[:-1]), time, self._since)
+        self._since, self._was_slow = float(since[-1]), bool(is_slow[-1])
+        return np.where(is_slow, time - since, 0.0), time
 
     def figure(self) -> MeasuredFigure:
         """Return what all blocks came to."""
-        length, begin = self._longest
-        return MeasuredFigure(length, f'from t = {begin:.6g} s' if length else 'never so slow')
+        value, _ = super().figure()
+        return MeasuredFigure(value, f'until t = {self._largest.time:.6g} s' if value else 'never so slow')
 
 
-class ReversalSpike(LimitMeasure):
+class ReversalSpike(LargestOf):
     """The largest size of the following error within some time after the commanded position turns, m."""
 
     def __init__(self, span: MotionSpan, within: float) -> None:
         super().__init__(span)
-        self._within, self._between, self._largest = within, _Between(), _Largest()
-        self._way, self._until, self._turns = 0.0, -math.inf, 0
+        self._within, self._way, self._turn = within, 0.0, -math.inf
 
-    def take(self, block: MotionBlock) -> None:
-        """Take the next block."""
-        time, commanded, error = self._between.joined(block.time, block.commanded, block.following_error)
-        steps = np.diff(commanded)
-        moves = np.flatnonzero(np.abs(steps) > _STANDS)
-        ways = np.append(self._way, np.sign(steps[moves]))
-        turned = moves[(ways[1:] != ways[:-1]) & (ways[:-1] != 0.0)]
-        begins = time[turned]     # the last sample before it goes the other way
-        counts = np.zeros(len(time), dtype=np.bool_)
-        counts[:int(np.searchsorted(time, self._until, 'right'))] = True
-        for begin in begins.tolist():
-            counts[slice(*np.searchsorted(time, [begin, begin + self._within + _INSTANT]))] = True
-            self._until = begin + self._within + _INSTANT
-        self._way, self._turns = float(ways[-1]), self._turns + len(begins)
-        self._largest.take(np.abs(error[counts]), time[counts])
-
-    def figure(self) -> MeasuredFigure:
-        """Return what all blocks came to."""
-        if not self._turns:
-            return MeasuredFigure(0.0, 'no turn')
-        return MeasuredFigure(self._largest.value, f'{self._largest.figure.remark}, of {self._turns} turns')
+    def _values(self, block: MotionBlock) -> tuple[Numbers, Numbers]:
+        before = np.append(self._way, block.way[:-1])
+        turn = held((block.way != before) & (before != 0.0), block.time, self._turn)
+        if len(turn):
+            self._way, self._turn = float(block.way[-1]), float(turn[-1])
+        return np.where(block.time - turn <= self._within + _INSTANT, np.abs(block.following_error), 0.0), block.time
 
 
-class _Beyond(LimitMeasure):
-    """How far the slider is beyond a target in the sense of the move to it, m."""
+class _Beyond(LargestOf):
+    """How far the slider is beyond the end of a move in its sense, m."""
 
-    def __init__(self, span: MotionSpan, target: float, way: int) -> None:
+    def __init__(self, span: MotionSpan, target: float, way: float) -> None:
         super().__init__(span)
-        self._target, self._way, self._largest = target, way, _Largest()
+        self._target, self._way = target, way
 
-    def take(self, block: MotionBlock) -> None:
-        """Take the next block."""
-        self._largest.take(self._way * (block.points.position - self._target), block.points.time)
-
-    def figure(self) -> MeasuredFigure:
-        """Return what all blocks came to."""
-        return MeasuredFigure(max(self._largest.value, 0.0))
+    def _values(self, block: MotionBlock) -> tuple[Numbers, Numbers]:
+        return np.maximum(self._way * (block.points.position - self._target), 0.0), block.points.time
 
 
-class RestPart(NamedTuple):
-    """A part of a rest of the commanded position; `way` the move before went: 1 up, -1 down, 0 where none was seen."""
+class Rest(NamedTuple):
+    """A rest of the commanded position, m, after a move in the sense `way`, from `begin` (s) on."""
 
-    begin: float         # s, of the rest
-    end: float           # s, of the part
-    commanded: float     # m
-    way: int
-    is_over: bool
-    block: MotionBlock
-
-
-class _Rests:
-    """Finds the rests of the commanded position that last at least `dwell` (s), while blocks come."""
-
-    def __init__(self, span: MotionSpan, dwell: float) -> None:
-        self._dwell, self._begin, self._way = dwell, span.begin, 0
-        self._last: tuple[float, float] | tuple[()] = ()   # time and commanded position
-
-    def parts(self, block: MotionBlock) -> Iterator[RestPart]:
-        """Yield the rests in a block; the last of them may be over soon, or too short."""
-        time, commanded = block.time, block.commanded
-        if not len(time):
-            return
-        if self._last:
-            time, commanded = np.append(self._last[0], time), np.append(self._last[1], commanded)
-        steps = np.diff(commanded)
-        moves = np.flatnonzero(np.abs(steps) > _STANDS)
-        begins = np.append(self._begin, time[moves + 1])
-        ways = np.append(self._way, np.sign(steps[moves]).astype(int))
-        rows = np.append(moves, len(time) - 1)
-        long = time[rows] - begins >= self._dwell
-        long[[0, -1]] = True      # what began before, and what goes on
-        for rest in np.flatnonzero(long).tolist():
-            begin, end, row = float(begins[rest]), float(time[rows[rest]]), int(rows[rest])
-            yield RestPart(begin, end, float(commanded[row]), int(ways[rest]), rest < len(moves), block.cut(begin, end))
-        self._begin, self._way, self._last = float(begins[-1]), int(ways[-1]), (float(time[-1]), float(commanded[-1]))
+    begin: float
+    commanded: float
+    way: float
+    measure: LimitMeasure
 
 
 class OfRests(LimitMeasure):
-    """Measures each rest of the commanded position by itself, as `make` says; the largest counts."""
+    """Measures each rest of the commanded position that lasts `dwell` (s) at least; the largest figure counts.
 
-    def __init__(self, span: MotionSpan, dwell: float, make: Callable[[MotionSpan, RestPart], LimitMeasure]) -> None:
+    `make` returns what measures one, from its span, the commanded position and the sense of the move before.
+    """
+
+    def __init__(self, span: MotionSpan, dwell: float, make: Callable[[MotionSpan, float, float], LimitMeasure]
+                 ) -> None:
         super().__init__(span)
-        self._dwell, self._make, self._rests = dwell, make, _Rests(span, dwell)
-        self._open: tuple[RestPart, LimitMeasure] | None = None
-        self.found: list[tuple[RestPart, LimitMeasure]] = []    # those that are over
+        self._dwell, self._make = dwell, make
+        self._open: Rest | None = None
+        self._until = span.begin
+        self._over: list[Rest] = []
 
     def take(self, block: MotionBlock) -> None:
         """Take the next block."""
-        for part in self._rests.parts(block):
-            if self._open is None or self._open[0].begin != part.begin:
-                self._open = part, self._make(MotionSpan(part.begin, part.end, self.span.mode, ()), part)
-            measure = self._open[1]
-            measure.take(part.block)
-            self._open = part, measure
-            if part.is_over:
-                self._keep()
+        time = block.time
+        if not len(time):
+            return
+        firsts = np.union1d(0, np.flatnonzero(block.has_moved))
+        lasts = np.append(firsts[1:], len(time)) - 1
+        looked_at = time[lasts] - time[firsts] >= self._dwell
+        looked_at[[0, -1]] = True        # what began before, and what goes on
+        for first, last in zip(firsts[looked_at].tolist(), lasts[looked_at].tolist()):
+            if block.has_moved[first] or self._open is None:
+                self._close()
+                begin, commanded, way = (float(column[first]) for column in (time, block.commanded, block.way))
+                measure = self._make(MotionSpan(begin, math.inf, self.span.mode, ()), commanded, way)
+                self._open = Rest(begin, commanded, way, measure)
+            self._until = float(time[last])
+            self._open.measure.take(block.cut(self._open.begin, self._until))
 
-    def _keep(self) -> None:
-        if self._open and self._open[0].way and self._open[0].end - self._open[0].begin >= self._dwell:
-            self.found.append(self._open)
-        self._open = None
+    @property
+    def rests(self) -> list[Rest]:
+        """Those behind a move that were long enough."""
+        self._close()
+        return self._over
 
     def figure(self) -> MeasuredFigure:
         """Return the largest figure; raises InputError without a rest."""
-        self._keep()
-        if not self.found:
+        rests = self.rests
+        if not rests:
             raise InputError('dwell', self._dwell, 'at most as long as the commanded position rests behind a move',
                              'make it shorter, check a longer run, or give the reference')
-        figures = [measure.figure().value for _, measure in self.found]
+        figures = [rest.measure.figure().value for rest in rests]
         row = int(np.argmax(figures))
-        return MeasuredFigure(figures[row], f'behind move {row + 1} of {len(figures)}, from t = '
-                              f'{self.found[row][0].begin:.6g} s')
+        return MeasuredFigure(figures[row], f'behind move {row + 1} of {len(rests)}, from t = {rests[row].begin:.6g} s')
+    def _close(self) -> None:
+        if self._open and self._open.way and self._until - self._open.begin >= self._dwell:
+            self._over.append(self._open)
+        self._open = None
 
 
 class Positioning(OfRests):
@@ -470,17 +401,16 @@ class Positioning(OfRests):
 
     def __init__(self, span: MotionSpan, targets: tuple[float, ...], dwell: float, tolerance: float, name: str = ''
                  ) -> None:
-        super().__init__(span, dwell, lambda span, _: EndPositionError(span, 0.0))
+        super().__init__(span, dwell, lambda rest, *_: EndPositionError(rest, 0.0))
         self._name, self._targets, self._tolerance = name, targets, tolerance
 
     @property
     def positions(self) -> list[PositionFigures]:
         """The figures of the targets, by position; raises InputError where there is none."""
-        self._keep()
-        rests = [(part.commanded, part.way, measure.deviation) for part, measure in self.found
-                 if isinstance(measure, EndPositionError)]
+        rests = [(rest.commanded, rest.way, rest.measure.deviation) for rest in self.rests
+                 if isinstance(rest.measure, EndPositionError)]
         found = []
-        for target in self._targets or _targets_of([rest[0] for rest in rests], self._tolerance):
+        for target in self._targets or _targets_of([commanded for commanded, *_ in rests], self._tolerance):
             both = [np.array([actual - target for commanded, rest_way, actual in rests
                               if rest_way == way and abs(commanded - target) <= self._tolerance]) for way in (1, -1)]
             if min(map(len, both)):
@@ -527,7 +457,6 @@ def _crossing(points: Points, level: float) -> float:
 # What can be limited: every figure, and what a limit on it must say.
 
 _INSTANT = 1e-9    # s, that a time of a step may be off by rounding
-_STANDS = 1e-12   # m, from one sample to the next: less is rounding of a drive that stands
 FARTHEST = 1e12   # m, like the positions of a scene
 TIMING_LIMIT = 'timing'
 
@@ -557,6 +486,11 @@ class Kind:
     def unit(self) -> str:
         """SI."""
         return unit_of(self.name)
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The columns of a state that a measurement must have for it."""
+        return ('drive_velocity',) if self.name.startswith('command_') else ('position', 'drive_position')
 
     @property
     def bound(self) -> Parameter:
@@ -607,20 +541,19 @@ KINDS = {kind.name: kind for kind in (
     Kind('longest_stick', LongestStick),
     Kind('limit_cycle_amplitude', LimitCycleAmplitude, (_CYCLES,)),
     Kind('peak_speed', partial(LargestSize, column=lambda block: (block.points.velocity, block.points.time))),
-    Kind('following_error_rms', partial(RootMeanSquare, column=lambda block: block.following_error)),
+    Kind('following_error_rms', partial(RootMeanSquare, column=lambda block: (block.following_error, block.time))),
     Kind('move_settling_time', lambda span, dwell, band: OfRests(
-        span, dwell, lambda rest, part: SettlingTime(rest, part.commanded, band)), (DWELL, _BAND)),
-    Kind('move_overshoot', lambda span, dwell: OfRests(
-        span, dwell, lambda rest, part: _Beyond(rest, part.commanded, part.way)), (DWELL,)),
-    Kind('steady_state_error', lambda span, dwell: OfRests(
-        span, dwell, lambda rest, part: EndPositionError(rest, part.commanded)), (DWELL,)),
-    Kind('velocity_ripple', partial(SpeedRange, lowest=False)),
-    Kind('lowest_speed', partial(SpeedRange, lowest=True), is_least=True),
+        span, dwell, lambda rest, commanded, _: SettlingTime(rest, commanded, band)), (DWELL, _BAND)),
+    Kind('move_overshoot', partial(OfRests, make=_Beyond), (DWELL,)),
+    Kind('steady_state_error', partial(OfRests, make=lambda rest, commanded, _: EndPositionError(rest, commanded)),
+         (DWELL,)),
+    Kind('velocity_ripple', VelocityRipple),
+    Kind('lowest_speed', LowestSpeed, is_least=True),
     Kind('standstill', Standstill, (_SPEED,)),
     Kind('reversal_spike', ReversalSpike, (_WITHIN,)),
     Kind('command_peak', partial(LargestSize, column=lambda block: (block.command, block.time))),
-    Kind('command_rms', partial(RootMeanSquare, column=lambda block: block.command)),
-    Kind('command_rate_peak', partial(CommandRate, rms=False)),
-    Kind('command_rate_rms', partial(CommandRate, rms=True)),
+    Kind('command_rms', partial(RootMeanSquare, column=lambda block: (block.command, block.time))),
+    Kind('command_rate_peak', partial(LargestSize, column=lambda block: (block.rate, block.time))),
+    Kind('command_rate_rms', partial(RootMeanSquare, column=lambda block: (block.rate, block.time))),
     *(Kind(name, partial(Positioning, name=name), (TARGETS, DWELL, TOLERANCE)) for name in PositioningFigures._fields),
 )}

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..bags.bag import METADATA
 from ..bags.topics import DRIVE_VELOCITY, MODE_EVENT, SLIDER_STATE
-from ..core.arrays import Columns, Numbers
+from ..core.arrays import Columns, Flags, Numbers
 from ..core.errors import RecordingError, one_line
 from ..core.types import Event, EventKind, Mode
 from ..recording import MeasuredRun, RecordedRun
@@ -51,7 +51,10 @@ class MotionBlock(NamedTuple):
     time: Numbers        # s, rising
     position: Numbers    # m, slider
     commanded: Numbers   # m, the drive or a reference
+    has_moved: Flags     # whether that moved since the sample before
+    way: Numbers         # in which sense it moved last: 1, -1, or 0 where it never did
     command: Numbers     # m/s, velocity of the drive
+    rate: Numbers        # m/s², its change since the sample before
     points: Points
 
     @property
@@ -63,7 +66,8 @@ class MotionBlock(NamedTuple):
         """Return the part from `begin` to `end` (s), both included."""
         of_samples, of_points = _rows(self.time, begin, end), _rows(self.points.time, begin, end)
         return MotionBlock(self.time[of_samples], self.position[of_samples], self.commanded[of_samples],
-                           self.command[of_samples], Points(*(column[of_points] for column in self.points)))
+                           self.has_moved[of_samples], self.way[of_samples], self.command[of_samples],
+                           self.rate[of_samples], Points(*(column[of_points] for column in self.points)))
 
 
 @dataclass(frozen=True)
@@ -97,17 +101,43 @@ def motion_blocks(states: Iterable[Columns], events: Sequence[Event], reference:
     Between two points next to each other the motion is smooth.  What comes after the last sample has a block itself.
     """
     times, first = np.unique([event.time for event in events], return_index=True)
-    done = 0
+    done, follower = 0, _Follower()
     for block in gathered(states):
         time = block['time']
         upto = int(np.searchsorted(times, time[-1], 'right'))
         points = _points(block, times[done:upto], [events[k] for k in first[done:upto]])
-        yield MotionBlock(time, block['position'], block['drive_position'] if reference is None else reference.at(time),
-                          block['drive_velocity'], points)
+        commanded = block['drive_position'] if reference is None else reference.at(time)
+        followed = follower.follow(time, commanded, block['drive_velocity'])
+        yield MotionBlock(time, block['position'], commanded, *followed, points)
         done = upto
-    none = np.empty(0)
-    late = [events[k] for k in first[done:]]
-    yield MotionBlock(none, none, none, none, _points(dict.fromkeys(Points._fields, none), times[done:], late))
+    none, no = np.empty(0), np.empty(0, np.bool_)
+    late = _points(dict.fromkeys(Points._fields, none), times[done:], [events[k] for k in first[done:]])
+    yield MotionBlock(none, none, none, no, none, none, none, late)
+
+
+def held(marks: Flags, values: Numbers, before: float) -> Numbers:
+    """Return in each row the value of the latest marked one, `before` in front of the first."""
+    rows = np.maximum.accumulate(np.where(marks, np.arange(len(marks)), -1))
+    return np.where(rows < 0, before, values[rows])
+
+
+class _Follower:
+    """Follows the command from block to block."""
+
+    def __init__(self) -> None:
+        self._last: tuple[Numbers, ...] = ()
+        self._way = 0.0
+
+    def follow(self, time: Numbers, commanded: Numbers, command: Numbers
+               ) -> tuple[Flags, Numbers, Numbers, Numbers]:
+        """Return the columns from `has_moved` to `rate`."""
+        before = self._last or (time[:1], commanded[:1], command[:1])
+        steps = [np.diff(column, prepend=last) for column, last in zip((time, commanded, command), before)]
+        has_moved = np.abs(steps[1]) > STANDS
+        way = held(has_moved, np.sign(steps[1]), self._way)
+        rate = np.divide(steps[2], steps[0], out=np.zeros(len(time)), where=steps[0] > 0.0)
+        self._last, self._way = (time[-1:], commanded[-1:], command[-1:]), float(way[-1])
+        return has_moved, way, command, rate
 
 
 def _points(block: Columns, times: Numbers, events: Sequence[Event]) -> Points:
@@ -127,6 +157,7 @@ _SEEN = ('time', 'position', 'velocity', 'drive_position', 'mode')
 _STATE_FIELDS = (*_SEEN, 'drive_velocity')
 _SEEN_FIELDS = (*_SEEN, 'step')   # the steps are for `missing_steps`
 _NANOSECOND = 1e-9
+STANDS = 1e-12   # m, from one sample to the next: less is rounding of a command that stands
 
 
 @dataclass(frozen=True)
@@ -207,11 +238,9 @@ def gaps_in(run: Run) -> Iterator[str]:
         yield f'{lost} of {lost + motion.states} steps are missing in the recording'
 
 
-def unmeasured(run: Run) -> tuple[str, ...]:
-    """Return what of a state was not measured, in a run that was imported."""
-    if not isinstance(run, MeasuredRun):
-        return ()
-    return tuple(name for name in ('position', 'drive_position', 'drive_velocity') if name not in run.measured)
+def unmeasured(run: Run, needed: Sequence[str] = ('position', 'drive_position')) -> tuple[str, ...]:
+    """Return which of the columns of a state were not measured, in a run that was imported."""
+    return tuple(name for name in needed if isinstance(run, MeasuredRun) and name not in run.measured)
 
 
 def _recorded_motion(run: RecordedRun) -> ObservedMotion:

@@ -49,7 +49,7 @@ CATALOGUE = {
     'sticks': Entry('', 'number of stops'),
     'longest_stick': Entry('s', 'longest time in stick'),
     'limit_cycle_amplitude': Entry('m', 'peak-to-peak following error over the last cycles'),
-    'following_error_rms': Entry('m', 'root mean square of the following error over the window'),
+    'following_error_rms': Entry('m', 'root mean square of the following error over the states'),
     'move_settling_time': Entry('s', 'longest time from the end of a commanded move to the band about its end'),
     'move_overshoot': Entry('m', 'furthest beyond the end of a commanded move while the command rests there'),
     'steady_state_error': Entry('m', 'largest |position − commanded| at the end of a rest of the command'),
@@ -58,7 +58,7 @@ CATALOGUE = {
     'standstill': Entry('s', 'longest time with |velocity| below a speed'),
     'reversal_spike': Entry('m', 'largest |following error| within some time after a turn of the command'),
     'command_peak': Entry('m/s', 'largest |drive velocity|'),
-    'command_rms': Entry('m/s', 'root mean square of the drive velocity'),
+    'command_rms': Entry('m/s', 'root mean square of the drive velocity over the states'),
     'command_rate_peak': Entry('m/s²', 'largest |change of the drive velocity| from state to state, over the time'),
     'command_rate_rms': Entry('m/s²', 'root mean square of this rate'),
     # of the circular test of two axes, ISO 230-4 (docs/check.md)
