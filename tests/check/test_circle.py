@@ -171,8 +171,8 @@ class TestTool:
 
     @pytest.mark.parametrize(('text', 'words'), [
         (f'circle: {{radius: -1.0}}\n{GLITCH}', ['circle.radius = -1.0', '> 0']),
-        (f'circle: {{center: [0.0]}}\n{GLITCH}', ['circle.center = [0.0]', 'two numbers']),
-        (f'circle: {{diameter: 0.1}}\n{GLITCH}', ['circle.diameter', 'one of radius, center']),
+        (f'circle: {{centre: [0.0]}}\n{GLITCH}', ['circle.centre = [0.0]', 'two numbers']),
+        (f'circle: {{diameter: 0.1}}\n{GLITCH}', ['circle.diameter', 'one of radius, centre']),
         ('limits: {mean_radial_deviation: {max: 1.0}}', ['mean_radial_deviation', 'counterclockwise', 'either sense',
                                                          'OTHER_X']),
         ('limits: {quadrant_glitch: {max: 1.0, window: {begin: first_command}}}', ['no command is known']),

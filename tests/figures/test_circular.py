@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 from scipy.special import ellipe
 
 from stickslip_sim.core.arrays import Numbers
@@ -105,6 +106,25 @@ class TestClosedForms:
         size = RADIUS + 2e-6 * np.cos(lobes * at)
         x, y = size * np.cos(at) + 1e-4, size * np.sin(at) + 2e-4
         assert zone_width(x, y) == pytest.approx(4e-6, abs=EXACT)
+
+
+@pytest.mark.parametrize('seed', [0, 1, 2])
+def test_the_zone_is_the_narrowest_of_any_centre(seed: int) -> None:
+    """As a search from several starts finds it; the centre of the least squares has a wider one."""
+    random = np.random.default_rng(seed)
+    at = 2.0 * math.pi * np.arange(40) / 40
+    size = RADIUS + 1e-5 * random.standard_normal(40)
+    x, y = size * np.cos(at), size * np.sin(at)
+
+    def width(centre: Numbers) -> float:
+        return 1e5 * float(np.ptp(np.hypot(x - 1e-5 * centre[0], y - 1e-5 * centre[1])))
+
+    options = {'xatol': 1e-12, 'fatol': 1e-13, 'maxiter': 4000}
+    searched = min(minimize(width, 0.3 * random.standard_normal(2), method='Nelder-Mead', options=options).fun
+                   for _ in range(8))
+    assert zone_width(x, y) == pytest.approx(1e-5 * searched, abs=EXACT)
+    middle = least_squares_circle(x, y)
+    assert zone_width(x, y) < 0.99 * float(np.ptp(np.hypot(x - middle.x, y - middle.y)))
 
 
 class TestGlitches:

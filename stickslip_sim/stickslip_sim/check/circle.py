@@ -89,13 +89,13 @@ def circular_test(paths: Sequence[Path], given: NominalCircle) -> CircularTest:
 
 def _no_turn(paths: Sequence[Path]) -> InputError:
     return InputError(OPTION, '; '.join(path.name for path in paths), 'a whole turn of 360 degrees',
-                      'check a longer run, or give circle: {radius: R, center: [X, Y]} in the limits')
+                      'check a longer run, or give circle: {radius: R, centre: [X, Y]} in the limits')
 
 
 def _nominal(paths: Sequence[Path], given: NominalCircle) -> Circle:
     """Return the circle that is given; what is not, of the last turns of the drives."""
-    if given.radius is not None and given.center is not None:
-        return Circle(*given.center, given.radius)
+    if given.radius is not None and given.centre is not None:
+        return Circle(*given.centre, given.radius)
     points = np.concatenate([path.commanded for path in paths])
     if not np.isfinite(points).all() and given.radius is None:
         raise InputError('radius', None, 'given: no drive position was measured', 'add --radius R in m')
@@ -107,8 +107,8 @@ def _nominal(paths: Sequence[Path], given: NominalCircle) -> Circle:
         raise _no_turn(paths)
     x, y = (np.concatenate([getattr(turn, name) for turn in turns]) for name in ('x', 'y'))
     circle = least_squares_circle(x, y)
-    center = given.center or (circle.x, circle.y)
-    return Circle(center[0], center[1], circle.radius if given.radius is None else given.radius)
+    centre = given.centre or (circle.x, circle.y)
+    return Circle(centre[0], centre[1], circle.radius if given.radius is None else given.radius)
 
 
 def check_circle(limits: Limits, runs: Sequence[tuple[str, Run]]) -> Checked:

@@ -121,7 +121,7 @@ def _time(name: str, given: object) -> float:
 
 _SECTIONS = ('window', 'target', 'reference', 'commands', 'limits', 'circle', 'positioning')
 RADIUS = Parameter('radius', 'double', None, 'm', 'of the nominal circle', low=0.0, low_open=True, high=FARTHEST)
-_CENTER = Parameter('center', 'double_array', None, 'm', 'x and y of it', low=-FARTHEST, high=FARTHEST)
+_CENTRE = Parameter('centre', 'double_array', None, 'm', 'x and y of it', low=-FARTHEST, high=FARTHEST)
 _TIMES = Parameter('times', 'double_array', None, 's', 'of the run', low=0.0, high=LATEST_TIME)
 _POSITIONS = Parameter('positions', 'double_array', None, 'm', 'at these times', low=-FARTHEST, high=FARTHEST)
 _NAME = Parameter('name', 'string', None, '', 'of a limit')
@@ -165,7 +165,7 @@ class NominalCircle(NamedTuple):
     """What a file says of the circle that two axes are to follow, m; the rest is that of the commanded path."""
 
     radius: float | None = None
-    center: tuple[float, float] | None = None
+    centre: tuple[float, float] | None = None
 
 
 class RestSettings(NamedTuple):
@@ -274,9 +274,9 @@ def _settings(name: str, given: Mapping[str, object], entries: Sequence[Paramete
 
 
 def _circle(given: Mapping[str, object]) -> NominalCircle:
-    circle = NominalCircle(**_settings('circle', given, (RADIUS, _CENTER)))
-    if circle.center is not None and len(circle.center) != 2:
-        raise InputError('circle.center', list(circle.center), 'two numbers, x and y in m', 'write it as [0.0, 0.0]')
+    circle = NominalCircle(**_settings('circle', given, (RADIUS, _CENTRE)))
+    if circle.centre is not None and len(circle.centre) != 2:
+        raise InputError('circle.centre', list(circle.centre), 'two numbers, x and y in m', 'write it as [0.0, 0.0]')
     return circle
 
 
