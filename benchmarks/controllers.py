@@ -10,12 +10,12 @@ Everything is measured with the exact engine at 1 kHz, and is the same on every 
 import pathlib
 from collections.abc import Callable, Iterator, Mapping
 
+import stickslip_sim as stickslip
 from stickslip_sim.controllers import BranchCompensation, Cascade, Controller, Moves
 from stickslip_sim.inputs import load_scene
 
-from .closed_loop import Figures, close_loop, figures
+from .closed_loop import Figures, Follower, close_loop, figures
 from .controllers_picture import draw
-from .linear_loop import most_delay
 from .page import replace_generated
 
 PAGE = pathlib.Path('docs/controllers.md')
@@ -45,6 +45,13 @@ def measure(moves: Moves, delay: int = 0, gains: Cascade | None = None, changes:
             for name, controller in controllers(gains).items()}
 
 
+def most_delay(gains: Cascade) -> int | None:
+    """Return the largest delay, in steps, at which the loop of the cascade is stable without friction."""
+    free = load_scene('positioning', {'axis.normal_force': 0.0})
+    found = stickslip.tune(Follower(Controller(gains), SLOW_FEED), free, SLOW_FEED.feed, duration=1.0)
+    return found.linear['slip'].largest_delay
+
+
 def by_feed() -> Iterator[str]:
     """Yield the table over the feed."""
     yield from _head('travel', 'feed', 'controller', 'sticks', 'largest error', 'speed at constant feed', 'overshoot',
@@ -63,7 +70,7 @@ def by_gain() -> Iterator[str]:
     for gain in GAINS:
         gains = Cascade(velocity_gain=gain)
         for moves in (MOVES[1], SLOW_FEED):
-            yield _row(f'{gain:g}', f'{damping * (1.0 + gain) ** 0.5:.2f}', most_delay(AXIS, gains),
+            yield _row(f'{gain:g}', f'{damping * (1.0 + gain) ** 0.5:.2f}', most_delay(gains),
                        f'{moves.feed * _MILLI:g} mm/s', *map(_brief, measure(moves, gains=gains).values()))
 
 

@@ -16,7 +16,7 @@ from .core.version import __version__
 TYPE_CHECKING = False   # what type checkers take for true; `typing` itself is not imported before it is needed
 
 if TYPE_CHECKING:
-    from .closed_loop import close_loop
+    from .closed_loop import close_loop, tune
     from .controllers.own_controller import Command
     from .core.errors import (
         ControllerError,
@@ -47,12 +47,12 @@ __all__ = [
     'RecordingWarning', 'Run', 'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError', 'StickslipError',
     'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'critical', 'error_estimate',
     'identify', 'load_scene', 'read_run', 'run_batch', 'scene_names', 'sensitivities', 'simulate',
-    'simulate_events', 'sweep', 'uncertainty',
+    'simulate_events', 'sweep', 'tune', 'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
     _MODULES = {
-        '.closed_loop': ('close_loop',),
+        '.closed_loop': ('close_loop', 'tune'),
         '.controllers.own_controller': ('Command',),
         '.core.errors': ('ControllerError', 'InputError', 'RecordingError', 'RecordingWarning', 'SolverError',
                          'StickslipError', 'UnsoundError', 'VerdictError'),

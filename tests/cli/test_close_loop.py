@@ -91,8 +91,8 @@ def test_to_standard_output(capsys: Capture) -> None:
 
 
 @pytest.mark.parametrize(('arguments', 'said'), [
-    (['own.py:Owns'], "controller = 'own.py:Owns' is refused: must be a class, function or callable object of own.py;"
-                     ' did you mean Own?'),
+    (['own.py:Owns'], "controller = 'own.py:Owns' is refused: must be a class, function or callable object of own.py; "
+                     'did you mean Own?'),
     (['own.py:number'], 'there are: Own, still, fails, Needs, ready'),
     (['own.py'], 'must be FILE.py:NAME'),
     (['ownn.py:Own'], 'did you mean own.py?'),

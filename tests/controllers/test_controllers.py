@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from benchmarks.closed_loop import RATE, close_loop, figures
-from benchmarks.controllers import AXIS, PAGE, SLOW_FEED, by_model, controllers
-from benchmarks.linear_loop import loop_matrix, most_delay
+from benchmarks.controllers import AXIS, PAGE, SLOW_FEED, by_model, controllers, most_delay
 from stickslip_sim.axis import CompliantContact
 from stickslip_sim.controllers import (
     AT_REST,
@@ -28,6 +27,7 @@ from stickslip_sim.controllers import (
 from stickslip_sim.core.types import Mode
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.simulation import Measured
+from tests.support.linear_loop import loop_matrix
 
 NO_FRICTION = {'axis.normal_force': 0.0}
 STILL = Measured(0.0, 0.0, 0.0, 0.0)
@@ -86,7 +86,7 @@ class TestLinearLoop:
             state[:] = (matrix if step else first) @ state
 
     def test_the_default_gains_stand_four_steps_of_delay(self) -> None:
-        assert most_delay(AXIS, Cascade()) == 4
+        assert most_delay(Cascade()) == 4
         errors = [abs(close_loop(Controller(Cascade()), Step(), 4.0, delay, NO_FRICTION).samples[-1].position - 1e-4)
                   for delay in (4, 5)]
         assert errors[0] < 1e-9

@@ -55,17 +55,18 @@ def test_the_blocks_of_python(clone: Path, capsys: Capture) -> None:
 
 def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
     """The class in a file, the run in Python, and the commands one after the other."""
-    controller, loop = re.findall(r'^```python\n(.*?)^```$', CLOSED_LOOP, re.MULTILINE | re.DOTALL)
-    exec(controller + loop, {})
-    said = capsys.readouterr().out
-    assert said in CLOSED_LOOP.replace('    ', '')
-    assert (clone / 'run.png').read_bytes().startswith(b'\x89PNG')
+    controller, *loops = re.findall(r'^```python\n(.*?)^```$', CLOSED_LOOP, re.MULTILINE | re.DOTALL)
+    for loop, picture in zip(loops, ('run.png', 'tune.png'), strict=True):
+        exec(controller + loop, {})
+        said = capsys.readouterr().out
+        assert said in CLOSED_LOOP.replace('    ', '')
+        assert (clone / picture).read_bytes().startswith(b'\x89PNG')
     (clone / 'my_controller.py').write_text(controller)
     for name, ending in (('move.csv', 'csv'), ('limits.yaml', 'yaml')):
         (part,) = re.findall(rf'^```{ending}\n(.*?)^```$', CLOSED_LOOP, re.MULTILINE | re.DOTALL)
         (clone / name).write_text(part)
     commands = re.findall(r'^    (stickslip (?:.*\\\n)*.*)$', CLOSED_LOOP, re.MULTILINE)
-    assert len(commands) == 4
+    assert len(commands) == 5
     for command in commands:
         done(capsys, command.replace('\\\n', ' ').removeprefix('stickslip '))
     assert (clone / 'shell.png').read_bytes().startswith(b'\x89PNG')

@@ -21,7 +21,7 @@ from .completion import LazyGroup, complete_for_shell
 
 _SECTIONS = {   # each verb by what a reader wants, as in the help: its function, by its file
     'Run': {'scenes': 'scenes.scenes', 'simulate': 'simulate.simulate',
-            'close-loop': 'close_loop.close_loop', 'import': 'import_.import_',
+            'close-loop': 'close_loop.close_loop', 'tune': 'tune.tune', 'import': 'import_.import_',
             'call': 'call.call'},
     'Look': {'plot': 'plot.plot', 'compare': 'compare.compare', 'export': 'export.export'},
     'Check': {'check': 'check.check', 'verify': 'verify.verify'},

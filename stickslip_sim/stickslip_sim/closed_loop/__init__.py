@@ -4,5 +4,6 @@
 
 from .loop import close_loop
 from .run import ClosedLoopRun
+from .tuning import Tuning, tune
 
-__all__ = ['ClosedLoopRun', 'close_loop']
+__all__ = ['ClosedLoopRun', 'Tuning', 'close_loop', 'tune']

@@ -45,7 +45,7 @@ def close_loop(controller: Callable[[float, Measurement], Any], scene: SceneOrNa
         raise InputError('duration', duration, f'a step ({float(scene.time.step):g} s) to {MOST_IN_MEMORY - 1} steps',
                          'give the seconds to simulate')
     own = OwnController(controller, (scene.command.max_velocity, scene.command.max_force))
-    every = _divisor(rate, scene.time.rate)
+    every = steps_between_asks(rate, scene.time.rate)
     times = instants(scene.time.step, 0, count + 1)
     wanted = None if setpoint is None else setpoints_at(setpoint, times.seconds + times.fractions)
     own.reset()
@@ -60,7 +60,7 @@ def measured_scene(scene: Scene) -> Scene:
     return replace(scene_from_values({**scene.values, **changes}, scene.summary), sources=scene.sources)
 
 
-def _divisor(rate: float | None, of_rig: float) -> int:
+def steps_between_asks(rate: float | None, of_rig: float) -> int:
     """Return how many steps of the rig there are in one of the controller."""
     if rate is None:
         return 1

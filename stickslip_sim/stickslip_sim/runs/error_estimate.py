@@ -103,8 +103,7 @@ def error_estimate(run: SimulatedRun) -> ErrorEstimate:
     Raises InputError on a closed loop, whose controller would be in these runs.
     """
     if run.is_commanded:
-        raise InputError('run', run.source, 'of a scene alone',
-                         'simulate the scene: a controller answers each run anew')
+        raise InputError('run', run.source, 'of a scene alone', 'simulate the scene: a controller answers anew')
     if run.scene.solver.name == 'exact':
         return _of_rounding(run)
     return _of_steps(run) if exact_follows(run.scene.axis, run.scene.normal_force) else _of_tolerances(run)

@@ -96,7 +96,7 @@ class Simulator:
         return self._advance(to, self._set_out(to))
 
     def step(self, to: Instant) -> tuple[list[Event], list[float]]:
-        """Bring the state to a time, which is not checked to be a later one; return events and the sample's numbers."""
+        """Bring the state to a time from the present one on, unchecked; return events and the numbers of a sample."""
         if self._inputs.are_commanded:
             self._solved.obey(self._waiting)
         events, self._waiting = self._waiting, []

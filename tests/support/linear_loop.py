@@ -6,13 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from benchmarks.closed_loop import RATE
 from stickslip_sim.axis import Axis
 from stickslip_sim.controllers import Cascade
 
-from .closed_loop import RATE
-
 Matrix = NDArray[np.float64]
-_MOST_DELAY = 20   # steps that are tried
 
 
 def loop_matrix(axis: Axis, gains: Cascade, delay: int = 0) -> Matrix:
@@ -60,9 +58,3 @@ def _command_row(gains: Cascade, size: int) -> Matrix:
     row[0] -= gains.position_gain * (1.0 + gains.velocity_gain)
     row[1] -= gains.velocity_gain
     return row
-
-
-def most_delay(axis: Axis, gains: Cascade) -> int:
-    """Return the largest delay, in steps, at which the loop is stable."""
-    return next(delay for delay in range(_MOST_DELAY)
-                if np.abs(np.linalg.eigvals(loop_matrix(axis, gains, delay + 1))).max() >= 1.0)

@@ -1,0 +1,48 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip tune`: margins of a controller of the user about stick and slip, and why its loop swings."""
+
+import click
+
+from . import completion
+from .arguments import SceneChanges, scene_changes, verb
+from .files import PICTURE, STDOUT, TEXT, say_written, show, whole, write_text
+
+
+@verb(short_help='Margins of your controller, and why its loop swings.')
+@click.argument('controller', metavar='FILE.py:NAME')
+@click.option('--scene', required=True, metavar='SCENE', shell_complete=completion.complete_scenes,
+              help='The axis and its rig: the name of a shipped scene or a file.')
+@click.option('--feed', type=float, metavar='V', help="Speed of the slip, m/s [default: the scene's largest].")
+@click.option('--rate', type=float, metavar='HZ', help='How often it is asked: time.rate, or a whole part of it '
+                                                       '[default: after each step].')
+@click.option('--gain', 'gains', multiple=True, metavar='NAME=VALUE', help='Make the class NAME with this argument.')
+@click.option('--duration', type=float, default=20.0, show_default=True, metavar='S',
+              help='Of the closed loop that is simulated: half of it at the feed, half of it holding, s.')
+@click.option('--plot', type=PICTURE, metavar='FILE.png', help='Draw Bode diagrams, step response and swing.')
+@click.option('--json', 'json_file', type=TEXT, metavar='FILE.json',
+              help='Write all numbers ("-": to standard output).')
+@scene_changes('Change a parameter of the scene.')
+def tune(controller: str, scene: str, changes: SceneChanges, feed: float | None, rate: float | None,
+         gains: tuple[str, ...], duration: float, plot: str | None, json_file: str | None) -> None:
+    """Say how far a controller is from swinging, and why it swings: NAME in FILE.py, a class or a function.
+
+    It is probed with small signals about stick and about steady slip (docs/closed_loop.md).
+    """
+    from ..closed_loop.report import tuning_report, tuning_values
+    from ..closed_loop.tuning import tune as tuned
+    from ..controllers.own_controller import load_controller, parse_gain
+    from ..report.values import json_text
+    from .progress import progress_bar
+
+    own = load_controller(controller, dict(map(parse_gain, gains)))
+    with progress_bar('simulating') as progress:
+        found = tuned(own, changes.load(scene), feed, rate, duration, progress)
+    if plot is not None:
+        with whole(plot) as temporary:
+            found.plot(temporary)
+    if json_file != STDOUT:
+        show(tuning_report(found))
+    if json_file is not None:
+        write_text(json_file, [json_text(tuning_values(found), 2)])
+    say_written(plot, json_file)
