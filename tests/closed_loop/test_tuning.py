@@ -354,7 +354,7 @@ class TestThePage:
 
     @pytest.mark.parametrize(('options', 'words'), [
         (('my_controller.py:Cascada', '--scene', 'positioning'), 'did you mean Cascade?'),
-        (('my_controller.py:Cascade', '--scene', 'positionin'), 'did you mean positioning?'),
+        (('my_controller.py:Cascade', '--scene', 'positionings'), 'did you mean positioning?'),
         (('my_controller.py:Cascade', '--scene', 'positioning', '--feed', '2'), 'feed = 2.0 is refused'),
         (('my_controller.py:Cascade', '--scene', 'positioning', '--gain', 'kp'), '--gain = '),
         (('my_controller.py:Cascade', '--scene', 'positioning', '--plot', 'tune.bmp'), 'tune.bmp')])
