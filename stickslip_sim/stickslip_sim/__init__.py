@@ -16,7 +16,7 @@ from .core.version import __version__
 TYPE_CHECKING = False   # what type checkers take for true; `typing` itself is not imported before it is needed
 
 if TYPE_CHECKING:
-    from .closed_loop import close_loop, tune
+    from .closed_loop import close_loop, close_loops, tune
     from .controllers.own_controller import Command
     from .core.errors import (
         ControllerError,
@@ -45,14 +45,14 @@ if TYPE_CHECKING:
 __all__ = [
     'Command', 'ControllerError', 'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError',
     'RecordingWarning', 'Run', 'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError', 'StickslipError',
-    'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'critical', 'error_estimate',
-    'identify', 'load_scene', 'read_run', 'run_batch', 'scene_names', 'sensitivities', 'simulate',
+    'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'close_loops', 'critical',
+    'error_estimate', 'identify', 'load_scene', 'read_run', 'run_batch', 'scene_names', 'sensitivities', 'simulate',
     'simulate_events', 'sweep', 'tune', 'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
     _MODULES = {
-        '.closed_loop': ('close_loop', 'tune'),
+        '.closed_loop': ('close_loop', 'close_loops', 'tune'),
         '.controllers.own_controller': ('Command',),
         '.core.errors': ('ControllerError', 'InputError', 'RecordingError', 'RecordingWarning', 'SolverError',
                          'StickslipError', 'UnsoundError', 'VerdictError'),

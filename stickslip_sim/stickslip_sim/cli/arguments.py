@@ -168,30 +168,41 @@ def scene_changes(help_of_set: str) -> Callable[[ClickCommand], ClickCommand]:
 
 # The options of every verb that runs a study.
 
-_OPTIONS = (
-    click.option('--out', required=True, metavar='FOLDER', help='Write points.csv (with pandas .parquet too) there.'),
-    click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: until the motion settles].'),
+_OF_WORKERS = (
     click.option('--workers', metavar='N|all', help='Processes to use [default: 1].'),
     click.option('--scheduler', metavar='ADDRESS', help='Use the workers of this Dask scheduler instead.'),
     click.option('--resume', is_flag=True, help='Go on with what was interrupted.'),
-    scene_changes('Change a parameter of the scene.'),
+)
+_OPTIONS = (
+    click.option('--out', required=True, metavar='FOLDER', help='Write points.csv (with pandas .parquet too) there.'),
+    click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: until the motion settles].'),
 )
 
 
 def study_options(command: ClickCommand) -> ClickCommand:
     """Give a command the options of every study; it takes those of its workers as one argument `members`."""
+    decorated = worker_options(scene_changes('Change a parameter of the scene.')(command))
+    for option in reversed(_OPTIONS):
+        decorated = option(decorated)
+    return decorated
+
+
+def worker_options(command: ClickCommand) -> ClickCommand:
+    """Give a command the options of what runs a study; it takes them as the arguments `members` and `resume`."""
     @functools.wraps(command)
     def with_members(*, workers: str | None, scheduler: str | None, **arguments: Any) -> Any:
         return command(members=_members(workers, scheduler), **arguments)
 
     decorated: ClickCommand = with_members
-    for option in reversed(_OPTIONS):
+    for option in reversed(_OF_WORKERS):
         decorated = option(decorated)
     return decorated
 
 
 def _members(workers: str | None, scheduler: str | None) -> Members:
     """Return the workers on a study: none but this process, processes, or a cluster; raises InputError, UsageError."""
+    if workers is None and scheduler is None:
+        return nullcontext()
     from ..study.cluster import cluster
     from ..study.resources import process_count
     from ..study.sweep import processes
@@ -200,5 +211,5 @@ def _members(workers: str | None, scheduler: str | None) -> Members:
         if workers is not None:
             raise click.UsageError('--workers and --scheduler exclude each other.')
         return cluster(scheduler)
-    count = process_count('1' if workers is None else workers)
+    count = process_count(str(workers))
     return processes(count) if count > 1 else nullcontext()

@@ -48,7 +48,8 @@ class Verb(click.Command):
             if isinstance(option.type, Output):
                 given = ctx.params[option.name or '']
                 for path in given if isinstance(given, tuple) else () if given is None else (given,):
-                    option.type.check(option.opts[0], path)
+                    if option.type is not FOLDER or not ctx.params.get('resume'):    # of what goes on it is there
+                        option.type.check(option.opts[0], path)
                     targets.append((option.opts[0], path))
         check_distinct(targets)
         return super().invoke(ctx)

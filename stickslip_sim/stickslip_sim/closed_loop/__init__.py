@@ -3,7 +3,8 @@
 """A controller of the user in a loop with the rig of a scene, in process: the same bits as in lock-step over ROS."""
 
 from .loop import close_loop
+from .many import ClosedLoops, close_loops
 from .run import ClosedLoopRun
 from .tuning import Tuning, tune
 
-__all__ = ['ClosedLoopRun', 'Tuning', 'close_loop', 'tune']
+__all__ = ['ClosedLoopRun', 'ClosedLoops', 'Tuning', 'close_loop', 'close_loops', 'tune']

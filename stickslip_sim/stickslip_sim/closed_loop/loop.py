@@ -8,6 +8,7 @@ from struct import Struct
 from typing import Any
 
 from ..controllers.own_controller import Measurement, OwnController
+from ..core.arrays import Numbers
 from ..core.errors import ControllerError, InputError, SolverError
 from ..core.time_grid import Instants, decimal, instants
 from ..core.types import Progress, Sample, tuple_of
@@ -39,15 +40,31 @@ def close_loop(controller: Callable[[float, Measurement], Any], scene: SceneOrNa
     then.  Raises InputError on all else that is wrong.
     """
     scene = measured_scene(scene_of(scene))
+    times = steps_of(scene, duration)
+    own = own_controller(controller, scene)
+    every = steps_between(rate, scene.time.rate)
+    wanted = None if setpoint is None else setpoints_at(setpoint, times.seconds + times.fractions)
+    return run_loop(own, scene, every, times, wanted, progress)
+
+
+def steps_of(scene: Scene, duration: float) -> Instants:
+    """Return the times of the steps of a run; raises InputError."""
     check_run_times(duration, None)
     count = int(decimal(float(duration)) / scene.time.step)
     if not 1 <= count < MOST_IN_MEMORY:
         raise InputError('duration', duration, f'a step ({float(scene.time.step):g} s) to {MOST_IN_MEMORY - 1} steps',
                          'give the seconds to simulate')
-    own = OwnController(controller, (scene.command.max_velocity, scene.command.max_force))
-    every = steps_between_asks(rate, scene.time.rate)
-    times = instants(scene.time.step, 0, count + 1)
-    wanted = None if setpoint is None else setpoints_at(setpoint, times.seconds + times.fractions)
+    return instants(scene.time.step, 0, count + 1)
+
+
+def own_controller(controller: object, scene: Scene) -> OwnController:
+    """Return a controller with the limits of a scene; raises InputError."""
+    return OwnController(controller, (scene.command.max_velocity, scene.command.max_force))
+
+
+def run_loop(own: OwnController, scene: Scene, every: int, times: Instants, wanted: Numbers | None,
+             progress: Progress = None) -> ClosedLoopRun:
+    """Return the run of a measured scene at its steps, with setpoints at each; raises as `close_loop` does."""
     own.reset()
     return _Loop(own, scene, every, times, wanted).run(progress)
 
@@ -60,7 +77,7 @@ def measured_scene(scene: Scene) -> Scene:
     return replace(scene_from_values({**scene.values, **changes}, scene.summary), sources=scene.sources)
 
 
-def steps_between_asks(rate: float | None, of_rig: float) -> int:
+def steps_between(rate: float | None, of_rig: float) -> int:
     """Return how many steps of the rig there are in one of the controller."""
     if rate is None:
         return 1
@@ -76,7 +93,7 @@ def steps_between_asks(rate: float | None, of_rig: float) -> int:
 class _Loop:
     """A run under way."""
 
-    def __init__(self, own: OwnController, scene: Scene, every: int, times: Instants, wanted: Any) -> None:
+    def __init__(self, own: OwnController, scene: Scene, every: int, times: Instants, wanted: Numbers | None) -> None:
         self._own, self._scene, self._every = own, scene, every
         self._rig = scene.make_rig()
         self._watchdog = Watchdog(scene.command.timeout)

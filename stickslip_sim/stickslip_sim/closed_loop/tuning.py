@@ -18,7 +18,7 @@ from ..core.types import Mode, Progress
 from ..inputs import SceneOrName, scene_of
 from ..scene import Scene, scene_from_values
 from .linear_loop import LinearLoop, check_delays
-from .loop import close_loop, measured_scene, steps_between_asks
+from .loop import close_loop, measured_scene, steps_between
 from .probing import NotLinearError, linear_controller, probe_length
 from .run import ClosedLoopRun
 
@@ -100,7 +100,7 @@ def tune(controller: Callable[[float, Measurement], Any], scene: SceneOrName, fe
     wrong.
     """
     scene = measured_scene(scene_of(scene))
-    every = steps_between_asks(rate, scene.time.rate)
+    every = steps_between(rate, scene.time.rate)
     feed = _feed_of(scene) if feed is None else feed
     if not 0.0 < abs(feed) <= scene.command.max_velocity:
         raise InputError('feed', feed, f'within ±{scene.command.max_velocity:g} m/s (command.max_velocity), not 0',

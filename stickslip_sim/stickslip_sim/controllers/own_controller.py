@@ -114,16 +114,26 @@ def load_controller(place: str, arguments: Mapping[str, object] | None = None) -
 
     Raises InputError, also where the file cannot be imported.
     """
+    found, given = named_controller(place), dict(arguments or {})
+    if not isinstance(found, type):
+        if given:
+            raise InputError(next(iter(given)), next(iter(given.values())),
+                             f'left out: {place.rpartition(":")[2]} is no class', 'only a class takes arguments')
+        return found
+    return made_controller(found, given)
+
+
+def named_controller(place: str) -> Any:
+    """Return what NAME is in FILE.py, as it stands there; raises InputError, also where it cannot be imported."""
     file, colon, name = place.rpartition(':')
     if not colon or not name or not file:
         raise InputError('controller', place, _FORM, 'name the class or function of the controller behind a colon')
-    found = _named(place, _imported(place, Path(file)), name)
-    given = dict(arguments or {})
-    if not isinstance(found, type):
-        if given:
-            raise InputError(next(iter(given)), next(iter(given.values())), f'left out: {name} is no class',
-                             'only a class takes arguments')
-        return found
+    return _named(place, _imported(place, Path(file)), name)
+
+
+def made_controller(found: Callable[..., Any], given: Mapping[str, object]) -> Any:
+    """Return what a class, or a function that makes controllers, makes of arguments; raises InputError."""
+    name = getattr(found, '__name__', type(found).__name__)
     made = f'{name}({", ".join(f"{key}={value!r}" for key, value in given.items())})'
     try:
         inspect.signature(found).bind(**given)

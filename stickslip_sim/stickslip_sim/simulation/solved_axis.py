@@ -62,6 +62,13 @@ def sample_of(row: list[float]) -> Sample:
     return tuple_of(Sample, (second, fraction, _MODES[int(mode)], int(direction), *rest))
 
 
+def events_in(table: Any, count: int) -> Iterator[Event]:
+    """Yield the first events of a table."""
+    for i in range(count):
+        second, fraction, kind, mode, direction, *rest = table.row(i)
+        yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
+
+
 class _Crowd:
     """The events of a call since its time last went on, and the time of the first."""
 
@@ -235,9 +242,7 @@ class SolvedAxis:
         self._sinusoids = self._solver.records.Sinusoids(self._inputs.sinusoids())
 
     def _events(self, count: int) -> Iterator[Event]:
-        for i in range(count):
-            second, fraction, kind, mode, direction, *rest = self._table.row(i)
-            yield Event(second, fraction, _KINDS[int(kind)], _MODES[int(mode)], int(direction), *rest)
+        return events_in(self._table, count)
 
     def _check_end(self, end: int, rows: int, crowd: _Crowd) -> None:
         """Let a solver go on whose table of events was full; raise SolverError where it gave up."""

@@ -14,11 +14,12 @@ from functools import partial
 from importlib.util import find_spec
 from typing import Any
 
+from ..core.arrays import Numbers
 from ..core.errors import InputError
-from ..figures.point_figures import Figures
 from .folder import KEPT
-from .study import Study, versions_of_a_study
+from .study import versions_of_a_study
 from .sweep import WorkerError, Workers
+from .table import Tabled
 
 _PATIENCE = 5.0   # s for the scheduler to answer
 
@@ -29,7 +30,7 @@ def cluster(address: str) -> Iterator[Workers]:
     with _quietly(), closing(_client(address)) as client, _reported(address):
         _check_workers(client, address)
         yield Workers(client.get_executor(), sum(client.nthreads().values()),
-                   partial(_checked_figures, versions_of_a_study()))
+                   partial(_checked_rows, versions_of_a_study()))
 
 
 @contextmanager
@@ -97,9 +98,9 @@ def _other(versions: Mapping[str, str]) -> str:
                      if versions[name] != own)
 
 
-def _checked_figures(versions: Mapping[str, str], study: Study, first: int, last: int) -> Figures:
-    """Return the figures of a stretch of points; raises WorkerError on a worker that came late with other versions."""
+def _checked_rows(versions: Mapping[str, str], study: Tabled, first: int, last: int) -> Numbers:
+    """Return the rows of a stretch of points; raises WorkerError on a worker that came late with other versions."""
     other = _other(versions)
     if other:
         raise WorkerError(f'a worker lacks the versions of this study, {other}: its last bits might differ; {KEPT}')
-    return study.figures(first, last)
+    return study.rows(first, last)

@@ -17,8 +17,18 @@ from ..core.arrays import Numbers
 from ..core.errors import InputError, paths_beside, suggestion
 from ..core.paths import made_folder
 from .resources import check_resources
-from .study import FORM, Study, description
-from .table import TableColumns, may_be_table, next_lines, read_rows, title_line, words, write_parquet
+from .study import Study
+from .table import (
+    TableColumns,
+    Tabled,
+    in_words,
+    may_be_table,
+    next_lines,
+    read_rows,
+    stretches,
+    title_line,
+    write_parquet,
+)
 
 LONGEST_SIDECAR = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, POINTS_TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
@@ -28,8 +38,8 @@ KEPT = 'what is done is kept, --resume goes on'
 class Folder:
     """The folder of a sweep; raises InputError, with a path in it, where the disk refuses."""
 
-    def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
+    def __init__(self, path: str | Path, form: str = Study.form) -> None:
+        self.path, self._form = Path(path), form
 
     @property
     def table(self) -> Path:
@@ -41,7 +51,7 @@ class Folder:
         """Whether all points are there."""
         return self.table.exists()
 
-    def begin(self, study: Study, command: str) -> None:
+    def begin(self, study: Tabled, command: str) -> None:
         """Make the folder with the description of the study and an empty table: whole, or not at all."""
         if os.path.lexists(self.path):
             raise InputError('--out', str(self.path), 'a folder that does not exist',
@@ -49,7 +59,7 @@ class Folder:
         temporary = self.path.absolute().with_name(f'.{os.getpid()}.{self.path.name}')
         with _refusing(self.path, 'nothing is left behind'), made_folder(temporary):
             check_resources(study, temporary)
-            (temporary / SIDECAR).write_text(json.dumps(description(study, command), indent=1) + '\n',
+            (temporary / SIDECAR).write_text(json.dumps(study.described(command), indent=1) + '\n',
                                              encoding='utf-8')
             (temporary / PARTIAL).write_bytes(title_line(study))
             temporary.rename(self.path)
@@ -77,7 +87,7 @@ class Folder:
         try:
             if path.is_file() and path.stat().st_size <= LONGEST_SIDECAR:
                 found = json.loads(path.read_text(encoding='utf-8'))
-                if found['form'] == FORM:
+                if found['form'] == self._form:
                     return dict(found)
         except (OSError, ValueError, KeyError, TypeError, RecursionError):
             pass
@@ -85,22 +95,22 @@ class Folder:
         raise InputError('folder', str(self.path), f'that of a sweep, with {SIDECAR} in it', 'sweep into a new one'
                          if self.path.exists() else suggestion(str(self.path), beside, 'no such folder: sweep into it'))
 
-    def check_same(self, study: Study) -> None:
+    def check_same(self, study: Tabled) -> None:
         """Raise InputError unless the folder is of this study, by the same versions."""
         found = self.described()
-        for name, value in description(study).items():
+        for name, value in study.described().items():
             if name != 'command' and found.get(name) != value:
                 raise InputError('--resume', str(self.path), f'the folder of this very study; its {name} is another',
                                  f'give the command that stands in its {SIDECAR}, or another folder')
 
-    def whole_chunks(self, study: Study) -> list[Numbers]:
+    def whole_chunks(self, study: Tabled) -> list[Numbers]:
         """Return the rows of each whole chunk of points that is there; the remains of a crash are cut off."""
         path, titles = self.path / PARTIAL, title_line(study)
         with _refusing(path), path.open('r+b') as file:
             if not may_be_table(path, study) or file.readline(len(titles)) != titles:
                 raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')
             chunks, end = [], len(titles)
-            for first, last in study.stretches():
+            for first, last in stretches(study):
                 found = next_lines(file, study, first, last)
                 try:
                     chunks.append(read_rows(found, study, first, last))
@@ -122,10 +132,11 @@ class Folder:
                 file.truncate(before)
                 raise
 
-    def finish(self, columns: TableColumns) -> None:
+    def finish(self, study: Tabled, columns: TableColumns) -> None:
         """Give the table its name; where pandas is installed, write its `columns` as Parquet too."""
         with _refusing(self.path):
-            write_parquet(columns | {'motion': words(columns['motion'])}, self.path / PARQUET)
+            worded = study.figure_names[0]
+            write_parquet(columns | {worded: in_words(study, columns[worded])}, self.path / PARQUET)
             (self.path / PARTIAL).replace(self.table)
 
 

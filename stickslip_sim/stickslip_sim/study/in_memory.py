@@ -15,7 +15,8 @@ from ..inputs import SceneOrName, scene_of
 from .critical import Critical, critical_of, default_range
 from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
-from .table import columns, rows_of, words
+from .sweep import rows_by
+from .table import columns, stretches, words
 from .uncertainty import Uncertainty, load_uncertain, uncertain_of, uncertainty_of
 from .variation import range_of, variation
 
@@ -82,8 +83,8 @@ def uncertainty(scene: SceneOrName, known: str | Path | Mapping[str, object], sa
 def _columns(study: Study, progress: Progress) -> dict[str, Numbers]:
     """Run all points of a study; return its parameters and figures by name."""
     parts = []
-    for first, last in study.stretches():
-        parts.append(rows_of(study.points(first, last), study.figures(first, last)))
+    for (_, last), rows in zip(stretches(study), rows_by(study, stretches(study), None)):
+        parts.append(rows)
         if progress:
             progress(last / study.count)
     return columns(study, np.concatenate(parts))

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..core.errors import InputError
-from .study import Study
-from .table import longest_line, width
+from .table import Tabled, longest_line, width
 
 # How much memory can be had: of the machine, and of the container or control group that this process is in.
 
@@ -74,7 +73,7 @@ _MOST_WORKERS = 1024
 _OF_A_WORKER = 50_000_000   # bytes: Python, numpy and the compiled engine, each process for itself
 
 
-def check_resources(study: Study, folder: Path) -> None:
+def check_resources(study: Tabled, folder: Path) -> None:
     """Raise InputError when the table of a study would not fit into memory or onto the disk of a folder."""
     disk = shutil.disk_usage(folder).free
     for where, of_a_point, free in (('memory', _IN_MEMORY * width(study), free_memory()),

@@ -14,7 +14,7 @@ from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..scene import Parameter
 from ..scene.ros_yaml import section
-from .variation import Variation, parameter_of
+from .variation import Variation, entry_of
 
 # The distribution of a parameter that is not known exactly, cut where the user cuts it.
 
@@ -100,7 +100,7 @@ class Distribution:
     @property
     def unit(self) -> str:
         """Of the parameter, as in the schema."""
-        return parameter_of(self.name)[0].unit
+        return entry_of(self.name)[0].unit
 
     @property
     def kept(self) -> float:
@@ -212,12 +212,14 @@ class EvenGrid:
 class Sobol:
     """`count` points of a scrambled Sobol sequence between the ends of the variations; a `seed` for each sequence.
 
-    Its first points are those of any longer one.  A power of two fills the space most evenly.
+    Its first points are those of any longer one.  A power of two fills the space most evenly.  Those of the variations
+    that come first may have `correlations`.
     """
 
-    variations: tuple[Variation, ...]
+    variations: tuple[Variation | Distribution, ...]
     count: int
     seed: int = 0
+    correlations: Correlations | None = None
 
     def __post_init__(self) -> None:
         if not 1 <= self.count <= MOST_DRAWN:
@@ -226,6 +228,9 @@ class Sobol:
     def points(self, first: int, last: int) -> Numbers:
         """Return the points from `first` on, up to `last`: a row each, a column for each variation."""
         shares = sobol_shares(len(self.variations), self.seed, first, last)
+        if self.correlations is not None:
+            known = len(self.correlations)
+            shares[:, :known] = correlated(shares[:, :known], factor_of(self.correlations))
         return np.stack([one.at(shares[:, k]) for k, one in enumerate(self.variations)], axis=1)
 
 

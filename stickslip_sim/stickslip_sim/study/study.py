@@ -4,23 +4,24 @@
 
 import itertools
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib import metadata
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError
-from ..figures.point_figures import Figures, Runs, figures_of_runs
+from ..figures.point_figures import FIGURES, MOTIONS, Figures, Runs, figures_of_runs
 from ..report.values import versions
 from ..runs.simulated import check_run_times
 from ..scene import Scene, scene_from_values
 from ..scene.load import named, parse_scene
 from .points import runs_alone, runs_in_batches, scene_at, works_in_batches
 from .sample import Distribution, EvenGrid, Saltelli, Sampling, Sobol
+from .table import rows_of
 from .variation import Variation, checked
 
 MOST_VARIATIONS = 10
@@ -38,12 +39,12 @@ class Study:
     values: Mapping[str, object]
     sample: Sampling
     duration: float | None = None
+    form: ClassVar[str] = 'stickslip study 1'
+    figure_names: ClassVar[tuple[str, ...]] = FIGURES
+    words: ClassVar[Mapping[float, str]] = {float(motion): word for motion, word in MOTIONS.items()}
 
     def __post_init__(self) -> None:
-        self._check_names()
-        for corner in itertools.product(*((one.low, one.high) for one in self.sample.variations)):
-            with named('at ' + ', '.join(f'{name}={number:g}' for name, number in zip(self.names, corner))):
-                self.scene_at(np.array(corner))
+        check_variations(self.sample.variations, self.scene_at)
         if self.duration is not None:
             check_run_times(self.duration, None)
         elif not self.works_in_batches:
@@ -80,11 +81,6 @@ class Study:
         """How many points to work on between two looks at the clock; the figures do not depend on it."""
         return _IN_A_CHUNK if self.works_in_batches else _ALONE_IN_A_CHUNK
 
-    def stretches(self, done: int = 0) -> Iterator[tuple[int, int]]:
-        """Yield the first point of each chunk after `done` of them, and the one after its last."""
-        for first in range(min(done * self.chunk, self.count), self.count, self.chunk):
-            yield first, min(first + self.chunk, self.count)
-
     def points(self, first: int, last: int) -> Numbers:
         """Return the points from `first` on, up to `last`: a row each, a column for each of `names`."""
         return self.sample.points(first, last)
@@ -97,25 +93,37 @@ class Study:
         """Return the figures of the points from `first` on, up to `last`."""
         return figures_of_runs(self.runs(self.points(first, last)))
 
+    def rows(self, first: int, last: int) -> Numbers:
+        """Return the points from `first` on, up to `last`, with their figures: a row each."""
+        return rows_of(self.points(first, last), self.figures(first, last))
+
+    def described(self, command: str = '') -> dict[str, Any]:
+        """Return its description, as `description` does."""
+        return description(self, command)
+
     def runs(self, points: Numbers) -> Runs:
         """Run the scenes of points."""
         if self.works_in_batches:
             return runs_in_batches(self.values, self.names, points, self.duration)
         return runs_alone(self.values, self.names, points, self.duration or 0.0)
 
-    def _check_names(self) -> None:
-        names = self.names
-        if not 1 <= len(names) <= MOST_VARIATIONS:
-            raise InputError('--over', f'{len(names)} times', f'given once to {MOST_VARIATIONS} times',
-                             'vary fewer parameters in one study')
-        twice = [name for name in names if names.count(name) > 1]
-        if twice:
-            raise InputError('--over', twice[0], 'given once for each parameter', 'drop one of the two')
+
+def check_variations(variations: Sequence[Variation | Distribution], scene_at: Callable[[Numbers], Scene]) -> None:
+    """Raise InputError unless they are a few, of different names, and every combination of their ends is a scene."""
+    names = [one.name for one in variations]
+    if not 1 <= len(names) <= MOST_VARIATIONS:
+        raise InputError('--over', f'{len(names)} times', f'given once to {MOST_VARIATIONS} times',
+                         'vary fewer parameters in one study')
+    twice = [name for name in names if names.count(name) > 1]
+    if twice:
+        raise InputError('--over', twice[0], 'given once for each parameter', 'drop one of the two')
+    for corner in itertools.product(*((one.low, one.high) for one in variations)):
+        with named('at ' + ', '.join(f'{name}={number:g}' for name, number in zip(names, corner))):
+            scene_at(np.array(corner))
 
 
 # A study as JSON values, and back: the file beside its table.
 
-FORM = 'stickslip study 1'
 _OF_THE_SAMPLE = ('points', 'duration', 'over', 'sobol', 'uncertain')
 
 
@@ -123,7 +131,7 @@ def description(study: Study, command: str = '') -> dict[str, Any]:
     """Return all that a study is, enough to run it again, with the `command` and the versions that run it."""
     sample = study.sample
     return {
-        'form': FORM, 'command': command, 'scene': study.scene.name, 'scene_hash': study.scene.hash,
+        'form': study.form, 'command': command, 'scene': study.scene.name, 'scene_hash': study.scene.hash,
         'points': study.count, 'duration': study.duration,
         'over': [{**_json(asdict(one)), 'unit': one.unit} for one in sample.variations],
         'sobol': {'points': sample.count, 'seed': sample.seed} if isinstance(sample, Sobol) else None,

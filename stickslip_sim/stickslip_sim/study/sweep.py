@@ -21,13 +21,12 @@ from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
+from ..core.arrays import Numbers
 from ..core.errors import StickslipError
 from ..core.hot_path import hot_path
 from ..core.types import Progress
-from ..figures.point_figures import Figures
 from .folder import KEPT, Folder
-from .study import Study
-from .table import TableColumns, columns, lines, read_columns, rows_of
+from .table import TableColumns, Tabled, columns, lines, read_columns, stretches
 
 # The workers on the chunks of a study beside this process: other processes of this machine.
 #
@@ -38,12 +37,16 @@ class WorkerError(StickslipError):
     """A worker is gone, or cannot work."""
 
 
+def _rows_of(study: Tabled, first: int, last: int) -> Numbers:
+    return study.rows(first, last)
+
+
 class Workers(NamedTuple):
-    """So many workers behind a `pool`, and the function by which they find the figures of a stretch of points."""
+    """So many workers behind a `pool`, and the function by which they find the rows of a stretch of points."""
 
     pool: Executor
     size: int
-    work: Callable[[Study, int, int], Figures] = Study.figures
+    work: Callable[[Tabled, int, int], Numbers] = _rows_of
 
 
 @contextmanager
@@ -165,8 +168,8 @@ class Swept(NamedTuple):
     ran: int
 
 
-def carry_out(study: Study, folder: Folder, workers: AbstractContextManager[Workers | None], resume: bool, command: str,
-              progress: Progress = None) -> Swept:
+def carry_out(study: Tabled, folder: Folder, workers: AbstractContextManager[Workers | None], resume: bool,
+              command: str, progress: Progress = None) -> Swept:
     """Run a study into its folder, new or resumed, as `sweep_into` does; `command` began it."""
     with workers as members:   # workers that cannot be had leave no folder behind
         if resume:
@@ -179,7 +182,7 @@ def carry_out(study: Study, folder: Folder, workers: AbstractContextManager[Work
             raise KeyboardInterrupt(f'interrupted; what is done is kept in {folder.path}, --resume goes on') from None
 
 
-def sweep_into(study: Study, folder: Folder, workers: Workers | None = None, progress: Progress = None) -> Swept:
+def sweep_into(study: Tabled, folder: Folder, workers: Workers | None = None, progress: Progress = None) -> Swept:
     """Run the points of a study that its folder does not have yet, finish the folder, and return all points.
 
     Without `workers` this process does it.  The table is the same for any number of workers and of interruptions.
@@ -190,32 +193,31 @@ def sweep_into(study: Study, folder: Folder, workers: Workers | None = None, pro
     with folder.taken():
         chunks = folder.whole_chunks(study)
         done = len(chunks)
-        for (first, last), figures in zip(study.stretches(done), _figures(study, study.stretches(done), workers)):
-            rows = rows_of(study.points(first, last), figures)
+        for (_, last), rows in zip(stretches(study, done), rows_by(study, stretches(study, done), workers)):
             folder.append(lines(study, rows))
             chunks.append(rows)
             if progress:
                 progress(last / study.count)
         table = columns(study, np.concatenate(chunks))
-        folder.finish(table)
+        folder.finish(study, table)
     return Swept(table, max(study.count - done * study.chunk, 0))
 
 
-def _figures(study: Study, stretches: Iterator[_Stretch], workers: Workers | None) -> Iterator[Figures]:
-    """Yield the figures of stretches of points, in their order."""
+def rows_by(study: Tabled, wanted: Iterator[_Stretch], workers: Workers | None) -> Iterator[Numbers]:
+    """Yield the rows of stretches of points, in their order."""
     if workers is None:
-        yield from (study.figures(*stretch) for stretch in stretches)
+        yield from (study.rows(*stretch) for stretch in wanted)
     else:
-        yield from _by_workers(study, stretches, workers)
+        yield from _by_workers(study, wanted, workers)
 
 
-def _by_workers(study: Study, stretches: Iterator[_Stretch], workers: Workers) -> Iterator[Figures]:
-    """Yield figures in the order of the stretches, with a few under way for each worker, for any number of workers."""
-    waiting = deque(_submitted(study, islice(stretches, _AHEAD * workers.size), workers))
+def _by_workers(study: Tabled, wanted: Iterator[_Stretch], workers: Workers) -> Iterator[Numbers]:
+    """Yield rows in the order of the stretches, with a few under way for each worker."""
+    waiting = deque(_submitted(study, islice(wanted, _AHEAD * workers.size), workers))
     while waiting:
         yield waiting.popleft().result()
-        waiting.extend(_submitted(study, islice(stretches, 1), workers))
+        waiting.extend(_submitted(study, islice(wanted, 1), workers))
 
 
-def _submitted(study: Study, stretches: Iterable[_Stretch], workers: Workers) -> list[Future[Figures]]:
-    return [workers.pool.submit(workers.work, study, *stretch) for stretch in stretches]
+def _submitted(study: Tabled, wanted: Iterable[_Stretch], workers: Workers) -> list[Future[Numbers]]:
+    return [workers.pool.submit(workers.work, study, *stretch) for stretch in wanted]

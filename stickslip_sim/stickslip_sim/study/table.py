@@ -6,28 +6,72 @@ Nothing here runs a point.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO, Protocol
 
 import numpy as np
 
 from ..core.arrays import Numbers, has_parquet
 from ..core.errors import InputError
 from ..figures.point_figures import FIGURES, MOTIONS, Figures, Motion
-from .study import Study
 
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
 _ROUNDING = 1e-13         # of a value: another version of numpy rounds steps of one ratio otherwise
 _LARGEST = 1e150          # of a cell, by far; its square, for variances, is still a number
 TableColumns = dict[str, Numbers]
-_CODES = {word: float(motion) for motion, word in MOTIONS.items()}
 
 
-def title_line(study: Study) -> bytes:
+class Tabled(Protocol):
+    """What has a table: `count` points with the numbers `names`, each with `figure_names`.
+
+    The first figure stands there in words: `words` of its numbers.  `form` is that of the description beside it.
+    """
+
+    @property
+    def form(self) -> str:
+        """Of its description."""
+
+    @property
+    def figure_names(self) -> tuple[str, ...]:
+        """What is found of each point."""
+
+    @property
+    def words(self) -> Mapping[float, str]:
+        """The words of the first figure."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The numbers that vary."""
+
+    @property
+    def count(self) -> int:
+        """How many points there are."""
+
+    @property
+    def chunk(self) -> int:
+        """How many points to work on at a time."""
+
+    def points(self, first: int, last: int) -> Numbers:
+        """Return the points from `first` on, up to `last`: a row each."""
+
+    def rows(self, first: int, last: int) -> Numbers:
+        """Return these points with their figures, a row each."""
+
+    def described(self, command: str = '') -> dict[str, Any]:
+        """Return all that it is as JSON values, with the `command`."""
+
+
+def stretches(study: Tabled, done: int = 0) -> Iterator[tuple[int, int]]:
+    """Yield the first point of each chunk after `done` of them, and the one after its last."""
+    for first in range(min(done * study.chunk, study.count), study.count, study.chunk):
+        yield first, min(first + study.chunk, study.count)
+
+
+def title_line(study: Tabled) -> bytes:
     """Return the line of names."""
-    return (','.join((*study.names, *FIGURES)) + '\n').encode()
+    return (','.join((*study.names, *study.figure_names)) + '\n').encode()
 
 
 def rows_of(points: Numbers, figures: Figures) -> Numbers:
@@ -35,16 +79,21 @@ def rows_of(points: Numbers, figures: Figures) -> Numbers:
     return np.column_stack([points, *(getattr(figures, name) for name in FIGURES)])
 
 
-def lines(study: Study, rows: Numbers) -> bytes:
+def lines(study: Tabled, rows: Numbers) -> bytes:
     """Return a line for each row of numbers; a number that does not exist stays empty."""
-    cells = [words(column) if name == 'motion' else map(_text, column.tolist())
-             for name, column in columns(study, rows).items()]
+    cells = [in_words(study, column) if place == len(study.names) else map(_text, column.tolist())
+             for place, column in enumerate(rows.T)]
     return ''.join(','.join(line) + '\n' for line in zip(*cells, strict=True)).encode()
 
 
-def columns(study: Study, rows: Numbers) -> TableColumns:
-    """Return the columns of rows of numbers by name; motions as numbers of `Motion`."""
-    return dict(zip((*study.names, *FIGURES), rows.T, strict=True))
+def columns(study: Tabled, rows: Numbers) -> TableColumns:
+    """Return the columns of rows of numbers by name; the figure in words is its numbers."""
+    return dict(zip((*study.names, *study.figure_names), rows.T, strict=True))
+
+
+def in_words(study: Tabled, figures: Numbers) -> list[str]:
+    """Return the words for numbers of the first figure."""
+    return [study.words[number] for number in figures.tolist()]
 
 
 def words(motions: Numbers) -> list[str]:
@@ -52,10 +101,10 @@ def words(motions: Numbers) -> list[str]:
     return [MOTIONS[Motion(int(motion))] for motion in motions.tolist()]
 
 
-def read_rows(found: Sequence[bytes], study: Study, first: int, last: int) -> Numbers:
+def read_rows(found: Sequence[bytes], study: Tabled, first: int, last: int) -> Numbers:
     """Return the rows in the lines of the points from `first` on, up to `last`; raises ValueError for other lines."""
-    place = len(study.names)
-    numbers = np.array([_numbers(line, place) for line in found])
+    place, codes = len(study.names), {word: number for number, word in study.words.items()}
+    numbers = np.array([_numbers(line, place, codes) for line in found])
     if numbers.shape != (last - first, width(study)) or not np.allclose(
             numbers[:, :place], study.points(first, last), rtol=_ROUNDING, atol=0.0):
         raise ValueError('these are the lines of other points')
@@ -64,27 +113,27 @@ def read_rows(found: Sequence[bytes], study: Study, first: int, last: int) -> Nu
     return numbers
 
 
-def next_lines(file: BinaryIO, study: Study, first: int, last: int) -> list[bytes]:
+def next_lines(file: BinaryIO, study: Tabled, first: int, last: int) -> list[bytes]:
     """Return the next lines of a file, which may lack ends of lines."""
     return list(islice(iter(lambda: file.readline(longest_line(study)), b''), last - first))
 
 
-def width(study: Study) -> int:
+def width(study: Tabled) -> int:
     """Return how many columns the table has."""
-    return len(study.names) + len(FIGURES)
+    return len(study.names) + len(study.figure_names)
 
 
-def may_be_table(path: Path, study: Study) -> bool:
+def may_be_table(path: Path, study: Tabled) -> bool:
     """Whether a file of any origin is worth reading: an ordinary one, no longer than all lines; raises OSError."""
     return path.is_file() and path.stat().st_size <= len(title_line(study)) + study.count * longest_line(study)
 
 
-def longest_line(study: Study) -> int:
+def longest_line(study: Tabled) -> int:
     """Return how many bytes a line takes at most."""
     return width(study) * _BYTES_OF_A_NUMBER
 
 
-def read_columns(path: Path, study: Study) -> TableColumns:
+def read_columns(path: Path, study: Tabled) -> TableColumns:
     """Return the columns of the table of a study in a file; raises InputError."""
     try:
         if not may_be_table(path, study):
@@ -106,24 +155,24 @@ def _text(number: float) -> str:
     return '' if math.isnan(number) else repr(number)
 
 
-def _rows_in(file: BinaryIO, study: Study) -> Numbers:
+def _rows_in(file: BinaryIO, study: Tabled) -> Numbers:
     """Return the rows of the table of a study; raises ValueError where it is another one."""
     if file.readline(len(title_line(study))) != title_line(study):
         raise ValueError('this is the table of another study')
     rows = np.empty((study.count, width(study)))
-    for first, last in study.stretches():
+    for first, last in stretches(study):
         rows[first:last] = read_rows(next_lines(file, study, first, last), study, first, last)
     if file.read(1):
         raise ValueError('there are more lines than points')
     return rows
 
 
-def _numbers(row: bytes, place: int) -> list[float]:
-    """Return the numbers in a line, whose motion stands at a `place`; raises ValueError."""
+def _numbers(row: bytes, place: int, codes: Mapping[str, float]) -> list[float]:
+    """Return the numbers in a line, with a word of these `codes` at a `place`; raises ValueError."""
     cells = row.decode('ascii').split(',')
-    if not row.endswith(b'\n') or len(cells) <= place or cells[place] not in _CODES:
+    if not row.endswith(b'\n') or len(cells) <= place or cells[place] not in codes:
         raise ValueError('this is no whole line')
-    cells[place] = str(_CODES[cells[place]])
+    cells[place] = str(codes[cells[place]])
     return [float(cell.strip() or 'nan') for cell in cells]
 
 

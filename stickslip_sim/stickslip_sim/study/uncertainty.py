@@ -9,7 +9,7 @@ Percentiles are over the independent points A and B of a sample, 2 N of them.  S
 """
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,7 +23,7 @@ from ..scene.load import named, read_text
 from ..scene.ros_yaml import read_yaml, section
 from .sample import LAWS, Correlations, Distribution, Law, Saltelli, correlations_of
 from .study import MOST_VARIATIONS
-from .variation import parameter_of
+from .variation import ParameterOf, parameter_of
 
 PERCENTS = (5, 25, 50, 75, 95)
 SPREAD = ('amplitude', 'period', 'stick_share', 'peak_speed', 'break_away_force', 'settling_time')
@@ -127,9 +127,6 @@ _PAGE = 'docs/maps.md'
 _SEED = Parameter('seed', 'integer', 0, '', 'of the sample', low=0, high=2**31 - 1)
 _LARGEST = 1e15    # as far as any parameter goes
 LEAST_KEPT = 0.5   # of the probability: of a law cut further little is left
-
-
-ParameterOf = Callable[[str], tuple[Parameter, int | None]]
 
 
 class Uncertain(NamedTuple):

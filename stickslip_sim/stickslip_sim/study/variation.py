@@ -4,7 +4,7 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +16,8 @@ from ..scene.parameter import Parameter
 from ..scene.schema import BY_NAME, PROFILES, forward_name
 
 MOTION_SECTIONS = ('axis', 'contact', 'friction', *PROFILES, 'initial', 'solver')
+GAIN = 'gain'    # the section of the arguments of a controller, beside those of a scene
+_LARGEST = 1e15
 _ALONG = {   # where an element of a list is
     'friction.kinetic.coefficients': 'friction.kinetic.velocities',
     'friction.excess.fractions': 'friction.excess.velocities',
@@ -26,6 +28,7 @@ _ALONG = {   # where an element of a list is
     'force.forces': 'force.times', 'force.amplitudes': 'force.frequencies',
     'normal_load.forces': 'normal_load.times', 'normal_load.amplitudes': 'normal_load.frequencies',
 }
+ParameterOf = Callable[[str], tuple[Parameter, int | None]]
 _FORM = 'a.b=LOW:HIGH:N or a.b=LOW:HIGH:N:log'
 _DRAWN_FORM = 'a.b=LOW:HIGH or a.b=LOW:HIGH:log'
 
@@ -47,7 +50,7 @@ class Variation:
     @property
     def unit(self) -> str:
         """Of the parameter, as in the schema."""
-        return parameter_of(self.name)[0].unit
+        return entry_of(self.name)[0].unit
 
     def grid(self) -> Numbers:
         """Return the values, both ends among them."""
@@ -61,8 +64,11 @@ class Variation:
         return self.low + (self.high - self.low) * shares
 
 
-def variation(text: str, drawn: bool = False) -> Variation:
-    """Return the variation of `a.b=LOW:HIGH:N[:log]`, without N for a drawn one; raises InputError."""
+def variation(text: str, drawn: bool = False, find: ParameterOf | None = None) -> Variation:
+    """Return the variation of `a.b=LOW:HIGH:N[:log]`, without N for a drawn one; raises InputError.
+
+    `find` says which parameters may vary, as `parameter_of` does, and raises on others.
+    """
     name, equals, rest = text.partition('=')
     name, words = name.strip(), rest.split(':')
     log = words[-1].strip() == 'log'
@@ -70,7 +76,7 @@ def variation(text: str, drawn: bool = False) -> Variation:
     if not equals or not name or len(words) != (2 if drawn else 3):
         raise InputError('--over', text, _DRAWN_FORM if drawn else _FORM,
                          'a Sobol sample has no N for each parameter' if drawn else 'N is the number of values')
-    parameter_of(name)
+    (find or parameter_of)(name)
     low, high = (_number(name, word) for word in words[:2])
     return checked(Variation(name, low, high, 0 if drawn else _count(name, words[2]), log))
 
@@ -80,6 +86,7 @@ def range_of(option: str, name: str, text: str) -> Variation:
     words = text.split(':')
     if len(words) != 2:
         raise InputError(option, text, 'LOW:HIGH', 'for example 1e-3:0.1')
+    parameter_of(name)
     low, high = (_number(name, word) for word in words)
     return checked(Variation(name, low, high, log=low > 0.0))
 
@@ -95,19 +102,30 @@ def checked(wanted: Variation) -> Variation:
     return wanted
 
 
-def parameter_of(name: str) -> tuple[Parameter, int | None]:
+def parameter_of(name: str, sections: Sequence[str] = MOTION_SECTIONS) -> tuple[Parameter, int | None]:
     """Return the parameter that a variation names and the index of an element; raises InputError.
 
-    It must be a number that decides the motion.
+    It must be a number in one of these sections: as a rule one that decides the motion.
     """
+    found = entry_of(name)
+    if found[0].name.partition('.')[0] not in sections:
+        raise InputError('parameter', name, 'one that decides the motion: in ' + ', '.join(sections),
+                         'the others change no run')
+    return found
+
+
+def entry_of(name: str) -> tuple[Parameter, int | None]:
+    """Return the number that a variation names, of a scene or a controller, and the index of an element.
+
+    Raises InputError.
+    """
+    if name.startswith(f'{GAIN}.') and name.removeprefix(f'{GAIN}.').isidentifier():
+        return Parameter(name, 'double', None, '', 'an argument of a controller', low=-_LARGEST, high=_LARGEST), None
     found = re.fullmatch(r'([^\[\]]+)(?:\[(0|[1-9][0-9]{0,8})\])?', name)
     entry = BY_NAME.get(found[1]) if found else None
     if found is None or entry is None:
         raise InputError('parameter', name, 'a parameter of a scene (docs/scene.md)',
                          suggestion(name, BY_NAME, 'check the name'))
-    if entry.name.partition('.')[0] not in MOTION_SECTIONS:
-        raise InputError('parameter', name, 'one that decides the motion: in ' + ', '.join(MOTION_SECTIONS),
-                         'the others change no run')
     if entry.type == 'double' and found[2] is None:
         return entry, None
     if entry.type == 'double_array' and found[2] is not None:
@@ -119,7 +137,7 @@ def parameter_of(name: str) -> tuple[Parameter, int | None]:
 
 def number_at(values: Mapping[str, object], name: str) -> float | None:
     """Return the number of a scene (`values`) that a variation names, None where it has none; raises InputError."""
-    entry, index = parameter_of(name)
+    entry, index = entry_of(name)
     value = values.get(entry.name)
     if index is not None:
         value = value[index] if isinstance(value, tuple) and index < len(value) else None
@@ -128,7 +146,7 @@ def number_at(values: Mapping[str, object], name: str) -> float | None:
 
 def place_of(values: Mapping[str, object], name: str) -> str:
     """Return where the element of a list that a variation names is in a scene (`values`): '35 mm/s'; else nothing."""
-    entry, index = parameter_of(name)
+    entry, index = entry_of(name)
     along = _ALONG.get(entry.name, '')
     places = values.get(along, values.get(forward_name(along)))
     if index is None or not isinstance(places, tuple) or index >= len(places):
@@ -149,7 +167,7 @@ def changes_at(base: Mapping[str, object], names: Sequence[str], point: Numbers)
     """
     changes: dict[str, object] = {}
     for name, number in zip(names, point.tolist(), strict=True):
-        entry, index = parameter_of(name)
+        entry, index = entry_of(name)
         if index is None:
             changes[name] = number
             continue
@@ -169,7 +187,8 @@ def _number(name: str, word: str) -> float:
         number = math.nan
     if not math.isfinite(number):
         raise InputError(name, word.strip(), 'a finite number at both ends of its range', 'write it as 350.0 or 6e5')
-    parameter_of(name)[0].checked((number,) if parameter_of(name)[1] is not None else number)
+    entry, index = entry_of(name)
+    entry.checked(number if index is None else (number,))
     return number
 
 

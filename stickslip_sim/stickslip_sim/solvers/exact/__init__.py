@@ -14,6 +14,7 @@ set_load = entry(engine.set_load)
 sample, energy, is_sound = entry(engine.sample), entry(engine.energy), entry(soundness.is_sound)
 walk = None if UNIT is None else PieceWalk(UNIT.Pieces, UNIT.walk, UNIT.sample_pieces)
 run_axes = getattr(RECORDS, 'run_axes', many_axes.run_axes)
+step_axes = getattr(RECORDS, 'step_axes', many_axes.step_axes)
 
 
 def _under_load(_: InputProfile) -> SolverOfFunctions:

@@ -21,12 +21,13 @@ from typing import Any
 from ...axis.codes import ACCELERATE, ACCELERATING, ARREST, BREAKAWAY, DECELERATE, REVERSE, STICK
 from ...axis.fields import numbers_in
 from ...axis.layout import Parameters
-from ...axis.rows import EventRow, Events, Sinusoids
+from ...axis.rows import EventRow, Events, SampleRow, Sinusoids
 from ...axis.state_record import State
 from ...core.hot_path import compiled
 from .. import DONE, FULL
 from .axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures, KeptRound, KeptRounds
-from .engine import advance, start
+from .engine import advance, set_inputs, start
+from .engine import sample as read
 from .soundness import is_sound
 
 SETTLED = 1e-6       # relative change of the period from one cycle to the next
@@ -65,6 +66,37 @@ def run_axes(parameters: Any, inputs: Any, starts: Any, duration: float, first: 
         a.stick_share /= duration
         a.complete = 1.0 if ended == DONE and is_sound(p, s, second, fraction) else 0.0
         out[i] = list(numbers_in([a, latest]))
+
+
+def step_axes(parameters: Any, states: Any, tables: Any, from_second: float, from_fraction: float, second: float,
+              fraction: float, velocities: Any, forces: Any, commanded: bool, sinusoids: Sinusoids, alive: Any,
+              counts: Any, told: Any, history: Any, step: int) -> int:
+    """Bring axes, each with parameters, a state and a table of its own, through one step; return how many events came.
+
+    They are brought to (`second`, `fraction`); where `commanded`, velocities (m/s) and forces (N) hold from the time
+    before it on.  `told` gets position, velocity, drive position, drive velocity and drive force, a row each, `history`
+    at the `step` the samples unless it is None, `counts` the events of each.  Those that are not `alive` are left out;
+    one whose solver gives up, whose table is full or whose state leaves the range of numbers no longer is.
+    """
+    sample = SampleRow()
+    for i in range(len(alive)):
+        counts[i] = 0
+        if not alive[i]:
+            continue
+        p, s, events, rows = parameters[i], states[i], tables[i], 0
+        if commanded:
+            rows = set_inputs(p, s, from_second, from_fraction, float(velocities[i]), 0.0, float(forces[i]), 0.0,
+                              sinusoids, events, 0)
+        rows, ended = advance(p, s, second, fraction, events, rows)
+        read(p, s, second, fraction, sample)
+        told[:, i] = (sample.position, sample.velocity, sample.drive, sample.drive_velocity,
+                      sample.drive_force)
+        row = sample.tolist()
+        if history is not None:
+            history[i, step] = row
+        alive[i] = ended == DONE and math.isfinite(sum(row[4:12]))
+        counts[i] = rows
+    return int(counts.sum())
 
 
 @compiled
