@@ -12,9 +12,11 @@ from scipy.stats import binomtest
 
 import stickslip_sim as stickslip
 from stickslip_sim.closed_loop.many import ClosedLoops
+from stickslip_sim.closed_loop.report import loops_report
 from stickslip_sim.controllers.own_controller import Command, Measurement
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import read_run
+from stickslip_sim.report.text import text_lines
 from stickslip_sim.study import Sobol
 from stickslip_sim.study.sweep import WorkerError
 from tests.support.tool import Capture, answered, refused
@@ -144,6 +146,17 @@ def test_the_pass_rate_the_worst_and_the_percentiles_are_those_of_the_table(limi
     assert found.percentiles['following_error'] == dict(zip((5, 25, 50, 75, 95),
                                                             np.percentile(errors, (5, 25, 50, 75, 95))))
     assert found.matrix.sum(axis=0).tolist() == [(errors <= 1.25e-3).sum(), (found.columns['sticks'] <= 1).sum()]
+
+
+def test_the_worst_of_a_limit_from_below_is_the_least(tmp_path: Path) -> None:
+    file = tmp_path / 'creep.yaml'
+    file.write_text('limits:\n  creep: {check: lowest_speed, min: 1.0e-5, window: {begin: 0.3}}\n')
+    found = loops(limits=file, samples=8)
+    speeds = found.columns['creep']
+    assert speeds.min() < 1e-5 < speeds.max()
+    assert speeds[found.worst['creep']] == speeds.min()
+    assert found.matrix[:, 0].tolist() == (speeds >= 1e-5).tolist()
+    assert any('at least 10 µm/s' in line for line in text_lines(loops_report(found)))
 
 
 def test_a_grid_runs_every_combination() -> None:

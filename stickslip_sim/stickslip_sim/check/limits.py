@@ -146,11 +146,14 @@ class Limit:
         """Return what a value leaves up to the bound; negative beyond it."""
         return value - self.bound if self.kind.is_least else self.bound - value
 
+    def is_kept(self, value: Any) -> Any:
+        """Return whether values, one or an array of them, are within the bound."""
+        return value >= self.bound if self.kind.is_least else value <= self.bound
+
     def outcome(self, figure: MeasuredFigure, span: CheckedSpan) -> 'LimitOutcome':
         """Return what a figure of a span comes to."""
         value, remark = figure
-        passed = value >= self.bound if self.kind.is_least else value <= self.bound
-        return LimitOutcome(self.name, self, passed, value, remark, span)
+        return LimitOutcome(self.name, self, bool(self.is_kept(value)), value, remark, span)
 
     @contextmanager
     def named(self) -> Iterator[None]:

@@ -29,8 +29,8 @@ def tune(controller: str, scene: str, changes: SceneChanges, feed: float | None,
 
     It is probed with small signals about stick and about steady slip (docs/closed_loop.md).
     """
-    from ..closed_loop.tuning_report import tuning_report, tuning_values
     from ..closed_loop.tuning import tune as tuned
+    from ..closed_loop.tuning_report import tuning_report, tuning_values
     from ..controllers.own_controller import load_controller, parse_gain
     from ..report.values import json_text
     from .progress import progress_bar

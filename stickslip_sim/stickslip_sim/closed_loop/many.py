@@ -73,7 +73,7 @@ class ClosedLoops:
     def matrix(self) -> Flags:
         """Whether each point (rows) kept each limit (columns)."""
         limits = self.study.limits
-        kept = [self.columns[one.name] <= one.maximum for one in (limits.limits if limits else ())]
+        kept = [one.is_kept(self.columns[one.name]) for one in (limits.limits if limits else ())]
         return np.array(kept, dtype=bool).reshape(len(kept), self.study.count).T
 
     @cached_property
@@ -84,8 +84,9 @@ class ClosedLoops:
     @cached_property
     def worst(self) -> dict[str, int]:
         """The point at which each limit is exceeded most, or kept least; none of a limit that no point has."""
-        return {name: int(np.nanargmax(self.columns[name])) for name in self.study.limit_names
-                if not np.isnan(self.columns[name]).all()}
+        limits = self.study.limits.limits if self.study.limits else ()
+        return {one.name: int(np.nanargmin(values) if one.kind.is_least else np.nanargmax(values)) for one in limits
+                if not np.isnan(values := self.columns[one.name]).all()}
 
     @cached_property
     def reasons(self) -> dict[int, str]:
