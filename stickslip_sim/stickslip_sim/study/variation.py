@@ -107,11 +107,11 @@ def parameter_of(name: str, sections: Sequence[str] = MOTION_SECTIONS) -> tuple[
 
     It must be a number in one of these sections: as a rule one that decides the motion.
     """
-    found = entry_of(name)
-    if found[0].name.partition('.')[0] not in sections:
+    section = name.partition('[')[0].partition('.')[0]
+    if section not in sections and (name.partition('[')[0] in BY_NAME or section == GAIN):
         raise InputError('parameter', name, 'one that decides the motion: in ' + ', '.join(sections),
                          'the others change no run')
-    return found
+    return entry_of(name)
 
 
 def entry_of(name: str) -> tuple[Parameter, int | None]:
