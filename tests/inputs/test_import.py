@@ -257,13 +257,21 @@ def refusal_of_identify(scene: SceneOrPath) -> None:
     stickslip.identify('no run', scene, {'axis.mas': {'distribution': 'uniform', 'low': 1.0, 'high': 2.0}})
 
 
+def creep(t: float, measured: object) -> float:
+    return 0.02
+
+
 CALLS: dict[str, Callable[[SceneOrPath], object]] = {
+    'close_loop': lambda scene: run_of(stickslip.close_loop(creep, scene, 0.05)),
+    'close_loops': lambda scene: repr(
+        stickslip.close_loops(creep, scene, 0.05, {'axis.mass': (50.0, 200.0, 2)}).columns),
     'critical': lambda scene: stickslip.critical(scene, 'axis.mass', (50.0, 200.0), 0.5),
     'identify': refusal_of_identify,
     'sensitivities': lambda scene: repr(stickslip.sensitivities(scene, ['event.1.time'], ['axis.drive_stiffness'])),
     'simulate': lambda scene: run_of(stickslip.simulate(scene, 0.5, 0.1)),
     'simulate_events': lambda scene: run_of(stickslip.simulate_events(scene, 0.5)),
     'sweep': lambda scene: repr(stickslip.sweep(scene, 'axis.mass=50:200:2', duration=0.5).columns),
+    'tune': lambda scene: repr(stickslip.tune(creep, scene, 0.02, duration=0.2).loops),
     'uncertainty': lambda scene: stickslip.uncertainty(
         scene, {'axis.mass': {'distribution': 'uniform', 'low': 50.0, 'high': 200.0}}, 16, duration=0.5),
 }
