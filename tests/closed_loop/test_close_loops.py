@@ -256,6 +256,23 @@ def test_interrupted_and_resumed_it_is_the_same_table(source: Path, limits: str,
         loops(controller, limits=limits, out=tmp_path / 'parts', resume=True)
 
 
+def test_what_is_never_reached_is_resumed_and_ranked(source: Path, tmp_path: Path) -> None:
+    file = tmp_path / 'settled.yaml'
+    file.write_text('limits: {move_settling_time: {band: 2.0e-5, max: 0.05}}\n')
+    given: dict[str, Any] = {'limits': file, 'out': tmp_path / 'out', 'setpoint': lambda t: min(0.004 * t, 0.0008)}
+    found = loops(f'{source}:Simple', **given)
+    times = found.columns['move_settling_time']
+    assert np.isinf(times).any()
+    assert not np.isinf(times).all()
+    percentiles = found.percentiles['move_settling_time']
+    assert percentiles is not None
+    assert not np.isnan(list(percentiles.values())).any()
+    assert percentiles[95] == np.inf
+    again = loops(f'{source}:Simple', **given, resume=True)
+    assert again.ran == 0
+    assert same(found, again)
+
+
 def test_a_worker_that_dies_is_one_line(source: Path) -> None:
     with pytest.raises(WorkerError, match='a worker process ended with exit code 7'):
         loops(f'{source}:Deadly', workers=2)

@@ -193,6 +193,12 @@ class TestSetpoints:
         with pytest.raises(InputError, match=said):
             self.run(given)
 
+    @pytest.mark.parametrize('heading', ['position [kg]', 'position [MM]', 'position (m/s)', 'x [furlong]'])
+    def test_a_unit_that_is_none_is_not_taken_for_si(self, heading: str, tmp_path: Path) -> None:
+        (tmp_path / 'move.csv').write_text(f'time,{heading}\n0,0\n1,2\n')
+        with pytest.raises(InputError, match='must be a heading with one of the units .*mm'):
+            self.run(tmp_path / 'move.csv')
+
 
 class TestRefused:
     @pytest.mark.parametrize(('answer', 'said'), [
@@ -243,6 +249,13 @@ class TestRefused:
     def test_no_controller(self, given: Any) -> None:
         with pytest.raises(InputError, match=r'controller = .*give an instance'):
             stickslip.close_loop(given, 'positioning', 0.1)
+
+    def test_the_rate_that_is_proposed_is_taken(self) -> None:
+        with pytest.raises(InputError) as refused:
+            stickslip.close_loop(following, 'positioning', 0.1, 300.0)
+        proposed = float(str(refused.value).split('for example ')[1].split(',')[0])
+        assert proposed == 250.0
+        stickslip.close_loop(following, 'positioning', 0.1, proposed)
 
     @pytest.mark.parametrize('rate', [0.0, -1.0, 300.0, 2000.0, math.nan, math.inf])
     def test_rates(self, rate: float) -> None:

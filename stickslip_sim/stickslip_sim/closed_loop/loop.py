@@ -86,7 +86,10 @@ def steps_between(rate: float | None, of_rig: float) -> int:
         raise InputError('rate', rate, allowed, f'{of_rig:g} asks after each step')
     steps = decimal(of_rig) / decimal(float(rate))
     if steps.denominator != 1:
-        raise InputError('rate', rate, allowed, f'for example {of_rig / round(steps):g}, {fix}')
+        near = round(steps)
+        exact = [k for k in range(max(near - 50, 1), near + 50) if decimal(of_rig / k) * k == decimal(of_rig)]
+        nearest = of_rig / min(exact, key=lambda k: abs(k - steps), default=1)
+        raise InputError('rate', rate, allowed, f'for example {nearest!r}, {fix}')
     return int(steps)
 
 

@@ -285,7 +285,12 @@ def _variation(name: str, given: Range, drawn: bool) -> Variation:
 
 def _percentiles(values: Numbers) -> dict[int, float] | None:
     known = values[~np.isnan(values)]
-    return dict(zip(PERCENTS, np.percentile(known, PERCENTS).tolist())) if len(known) else None
+    if not len(known):
+        return None
+    with np.errstate(invalid='ignore'):
+        found = np.percentile(known, PERCENTS)
+    upper = np.percentile(known, PERCENTS, method='higher')   # no number lies between two infinite ones
+    return dict(zip(PERCENTS, np.where(np.isnan(found), upper, found).tolist()))
 
 
 def _drawn(draw: Callable[[Path], None], path: Path) -> None:

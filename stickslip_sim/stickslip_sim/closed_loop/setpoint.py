@@ -97,7 +97,11 @@ def _table(path: Path) -> CsvTable:
 
     def column(names: tuple[str, ...], units: Any) -> Wanted:
         found = next((cell for cell in heading if cell.split('[')[0].split('(')[0].strip() in names), names[0])
-        return wanted_column('setpoint', found, 'setpoint', named_unit(found, units), units)
+        unit = named_unit(found, units)
+        if unit is None and any(bracket in found for bracket in '[('):
+            raise InputError('setpoint', found, f'a heading with one of the units {", ".join(units)}',
+                             'correct the unit, or leave it out for SI')
+        return wanted_column('setpoint', found, 'setpoint', unit, units)
 
     return CsvTable('setpoint', path, [column(*name) for name in _NAMES], MOST_POINTS)
 
