@@ -196,7 +196,7 @@ class TestSetpoints:
     @pytest.mark.parametrize('heading', ['position [kg]', 'position [MM]', 'position (m/s)', 'x [furlong]'])
     def test_a_unit_that_is_none_is_not_taken_for_si(self, heading: str, tmp_path: Path) -> None:
         (tmp_path / 'move.csv').write_text(f'time,{heading}\n0,0\n1,2\n')
-        with pytest.raises(InputError, match='must be a heading with one of the units .*mm'):
+        with pytest.raises(InputError, match=r'must be a heading with one of the units .*mm'):
             self.run(tmp_path / 'move.csv')
 
 

@@ -88,6 +88,7 @@ class LoopStudy:
     fixed: Mapping[str, object] = field(default_factory=dict)
     vectorized: bool = False
     form: ClassVar[str] = FOLDER_FORM
+    largest: ClassVar[float] = math.inf
     words: ClassVar[Mapping[float, str]] = {float(outcome): word for outcome, word in WORDS.items()}
 
     def __post_init__(self) -> None:

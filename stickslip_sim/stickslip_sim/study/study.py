@@ -40,6 +40,7 @@ class Study:
     sample: Sampling
     duration: float | None = None
     form: ClassVar[str] = 'stickslip study 1'
+    largest: ClassVar[float] = 1e150    # of a cell, by far; its square, for variances, is still a number
     figure_names: ClassVar[tuple[str, ...]] = FIGURES
     words: ClassVar[Mapping[float, str]] = {float(motion): word for motion, word in MOTIONS.items()}
 

@@ -19,19 +19,23 @@ from ..figures.point_figures import FIGURES, MOTIONS, Figures, Motion
 
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
 _ROUNDING = 1e-13         # of a value: another version of numpy rounds steps of one ratio otherwise
-_LARGEST = 1e150          # of a cell, by far; its square, for variances, is still a number
 TableColumns = dict[str, Numbers]
 
 
 class Tabled(Protocol):
     """What has a table: `count` points with the numbers `names`, each with `figure_names`.
 
-    The first figure stands there in words: `words` of its numbers.  `form` is that of the description beside it.
+    The first figure stands there in words: `words` of its numbers.  `form` is that of the description beside it, and no
+    cell is beyond `largest`: inf where a figure may be infinite, as a time that never comes.
     """
 
     @property
     def form(self) -> str:
         """Of its description."""
+
+    @property
+    def largest(self) -> float:
+        """Of a cell."""
 
     @property
     def figure_names(self) -> tuple[str, ...]:
@@ -108,7 +112,7 @@ def read_rows(found: Sequence[bytes], study: Tabled, first: int, last: int) -> N
     if numbers.shape != (last - first, width(study)) or not np.allclose(
             numbers[:, :place], study.points(first, last), rtol=_ROUNDING, atol=0.0):
         raise ValueError('these are the lines of other points')
-    if (np.abs(numbers[np.isfinite(numbers)]) > _LARGEST).any():   # a time that never comes is infinite
+    if (np.abs(numbers) > study.largest).any():
         raise ValueError('these are no figures of an axis')
     return numbers
 
