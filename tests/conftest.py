@@ -9,13 +9,13 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 import pytest
 from hypothesis import settings
-from xdist.scheduler import LoadFileScheduling
 
 from stickslip_sim.cli.main import run
+from tests.support.whole_files import pytest_xdist_make_scheduler as pytest_xdist_make_scheduler
 
 # The same examples each time, however slow a busy machine is; `make fuzz` looks for new ones.
 settings.register_profile('always the same', derandomize=True, database=None, deadline=None)
@@ -41,35 +41,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     slow = {item.path for item in items if item.get_closest_marker('slow')}
     counts = Counter(item.path for item in items)
     items.sort(key=lambda item: (item.path not in slow, -counts[item.path]))
-
-
-class FilesOnce(LoadFileScheduling):    # type: ignore[misc]  # it has no types
-    """Whole files for each process; what one that died had not begun goes to another one.
-
-    Its base class hands out what was done, too, and waits for ever for the end of nothing; it waits, too, for a process
-    that has one test and begins with it when it knows of the next; it gives tests to a process that has not found them
-    yet; and the test that ends a process would end another.
-    """
-
-    def _reschedule(self, node: Any) -> None:
-        if node not in self.registered_collections:
-            return
-        super()._reschedule(node)
-        if self._pending_of(self.assigned_work[node]) == 1:
-            super()._reschedule(node)
-
-    def remove_node(self, node: Any) -> str | None:
-        begun = self.assigned_work.pop(node)
-        left = [test for tests in begun.values() for test, is_done in tests.items() if not is_done]
-        for test in left[1:]:
-            self.workqueue.setdefault(self._split_scope(test), {})[test] = False
-        for other in self.assigned_work:
-            self._reschedule(other)
-        return left[0] if left else None
-
-
-def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> FilesOnce | None:
-    return FilesOnce(config, log) if config.getoption('dist') == 'loadfile' else None
 
 
 class Program(Protocol):

@@ -113,7 +113,7 @@ def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
         ended.enter_context(running('-r', '__ns:=/cell'))
         ended.enter_context(client('/cell')).connect()
         waiting = [ended.enter_context(started(sys.executable, *example, *nowhere)) for example in (
-            [CONTROLLER], [SETPOINT], [SETPOINT, '--lockstep'], [LOCKSTEP], [DRIVE, '0.001'])]
+            [CONTROLLER], [SETPOINT, '--lockstep'], [LOCKSTEP], [DRIVE, '0.001'])]
         for each in waiting:
             assert each.stderr
             line = each.stderr.readline()
@@ -203,7 +203,7 @@ class TestFiveMinutes:
 
     def test_lock_step_gives_the_same_recorded_run_each_time(self, folder: Path, capsys: Capture) -> None:
         with started(executable('sim_node'), *self.STEPPED_AXIS[1:]) as axis:
-            assert python(*self.STEPPER[1:]).returncode == 0
+            assert python(*self.STEPPER[1:], '--duration', '0.3').returncode == 0
             for words in ('record off', 'reset', 'record'):
                 code, _, errors = answered(capsys, 'call', *words.split())
                 assert code == 0, errors
@@ -211,10 +211,5 @@ class TestFiveMinutes:
             interrupt(axis)
         first, second = sorted((folder / 'runs').iterdir())
         whole, part = (open_bag(run).columns('/slider_state')['position'].tolist() for run in (first, second))
-        assert part == whole[:201]
+        assert (part, len(whole)) == (whole[:201], 301)
         assert answered(capsys, 'verify', first)[0] == 0
-        code, (head, verdict, *_), errors = self.check(capsys)
-        assert code == 3, errors
-        assert '0 to 2 s, 2001 states' in head
-        assert head.endswith('first command at t = 0 s')
-        assert verdict.startswith('not in real time (time.mode lockstep); commands: 400 received, 0 refused')

@@ -32,10 +32,9 @@ distributions:
     python_version: 3
 """
 PROGRAMS = {'cascade_controller', 'compensating_controller', 'health', 'replay_node', 'sim_node', 'stickslip'}
-COLCON = ['colcon', 'build', '--base-paths', '.', '--build-base', '../build', '--install-base', '../install']
 INSTALLATIONS = {
-    'colcon': COLCON,
-    'colcon, with links': [*COLCON, '--symlink-install'],
+    'colcon, with links': ['colcon', 'build', '--base-paths', '.', '--build-base', '../build',
+                           '--install-base', '../install', '--symlink-install'],
     'build farm': [sys.executable, 'setup.py', '-q', 'egg_info', '--egg-base', '..', 'build', '--build-base',
                    '../build', 'install', '--root', '../install', '--prefix', '/stickslip_sim'],
 }
@@ -143,17 +142,9 @@ def test_rosdep_finds_a_rule_for_each_dependency(tmp_path: Path) -> None:
         for word in words if word}
 
 
-@pytest.mark.ros
-@pytest.mark.slow
-def test_colcon_test_runs_the_tests_of_the_packages(tmp_path: Path) -> None:
-    pytest.importorskip('rclpy')
-    colcon, results = ('colcon', '--log-base', tmp_path / 'log'), ('--test-result-base', tmp_path)
-    done(*colcon, 'test', *results, '--return-code-on-test-failure', '--event-handlers', 'console_cohesion+',
-         folder=ROOT / 'ros2_ws')
-    summary = done(*colcon, 'test-result', *results, '--all', folder=ROOT / 'ros2_ws')
-    counts = re.search(r'^Summary: (\d+) tests, 0 errors, 0 failures, 0 skipped$', summary, re.MULTILINE)
-    assert counts is not None, summary
-    assert int(counts[1]) >= 10
+def test_the_built_workspace_has_programs_and_files() -> None:
+    """Which colcon made, without links."""
+    has_programs_and_files(ROOT / 'ros2_ws/install/stickslip_sim')
 
 
 @pytest.mark.slow
@@ -162,7 +153,11 @@ def test_an_installation_has_programs_and_files(command: list[str], tmp_path: Pa
     pytest.importorskip('rclpy')
     done(*command, folder=copy_package(tmp_path), environment={
         **os.environ, 'STICKSLIP_COMPILED': '0', 'COLCON_LOG_PATH': str(tmp_path / 'log')})
-    prefix = tmp_path / 'install/stickslip_sim'
+    has_programs_and_files(tmp_path / 'install/stickslip_sim')
+
+
+def has_programs_and_files(prefix: Path) -> None:
+    pytest.importorskip('rclpy')
     programs = [*(prefix / 'lib/stickslip_sim').iterdir()]
     assert {path.name for path in programs} == PROGRAMS
     assert [path.name for path in (prefix / 'bin').iterdir()] == ['stickslip']

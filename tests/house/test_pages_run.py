@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
 from benchmarks.identification import COMMANDS, EXAMPLES, FAILS, TRUTH
 from benchmarks.maps import CRITICAL, PICTURES, UNCERTAIN, picture_of
@@ -72,6 +71,8 @@ def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
     commands = re.findall(r'^    (stickslip (?:.*\\\n)*.*)$', CLOSED_LOOP, re.MULTILINE)
     assert len(commands) == 6
     for command in commands:
+        if command.startswith('stickslip tune'):
+            continue    # tests/closed_loop/test_tuning.py compares what it says
         one_line = command.replace('\\\n', ' ').removeprefix('stickslip ')
         if '--samples' in command:    # some of the axes do not keep the limits
             code, said, _ = answered(capsys, *shlex.split(one_line.replace('--samples 1000', '--samples 8')))
@@ -113,11 +114,6 @@ class TestMaps:
 class TestIdentification:
     ROW = re.compile(r'^ *([a-z]\w*(?:\.\w+)+(?:\[\d\])?) +'                                 # name
                      r'([\d.e+-]+)(?: (?:N s|[^\d ]+))?(?:/m)? +([\d.e+-]+)', re.MULTILINE)   # start and found
-    SLIPS = re.compile(r'(\d+) slips, fitted beside measured, apart in the median and at most: '
-                       r'break-away force (\S+) and (\S+) %, time at rest before (\S+) and (\S+) %')
-    ROWS = 3001            # of the run of another model: three quarters of it
-    MOST_SIMULATIONS = 47_500    # then; with searches that go on without gain it takes 48,600
-    FREE = ('axis.drive_stiffness', 'friction.static.limit', 'friction.static.time_constant', 'friction.kinetic.limit')
 
     def found_in(self, text: str) -> Mapping[str, tuple[float, float]]:
         """Return start and found value of each parameter, in the unit that is printed."""
@@ -125,7 +121,7 @@ class TestIdentification:
 
     def test_the_commands_find_what_it_says(self, capsys: Capture) -> None:
         for name, commands in COMMANDS.items():
-            said = [done(capsys, command) for command in commands if name != FAILS]
+            said = [done(capsys, command) for command in commands if name != FAILS]    # that one takes a minute
             if name == 'synthetic':
                 printed, here = self.found_in(part_of(IDENTIFICATION, name)), self.found_in(said[-1])
                 assert set(printed) == set(here) == set(TRUTH)
@@ -139,30 +135,3 @@ class TestIdentification:
             before = start[name]
             assert isinstance(before, float)
             assert found / begun == pytest.approx(TRUTH[name] / before, rel=0.005), name
-
-    def test_a_model_that_is_not_that_of_the_axis_has_its_rests_and_break_aways(self, clone: Path,
-                                                                                capsys: Capture) -> None:
-        """On three quarters of the run, with four of its numbers, as ten on all of it take a minute.
-
-        And its search ends early: what only crawls far from the run, and what gains nothing, does not go on.
-        """
-        (clone / 'examples').unlink()
-        (clone / EXAMPLES).mkdir(parents=True)
-        for name, lines in (('lugre.csv', self.ROWS + 1), ('lugre_start.yaml', None)):
-            text = (ROOT / EXAMPLES / name).read_text(encoding='utf-8').splitlines(keepends=True)
-            (clone / EXAMPLES / name).write_text(''.join(text[:lines]))
-        free = yaml.safe_load((ROOT / EXAMPLES / 'lugre_free.yaml').read_text(encoding='utf-8'))['parameters']
-        (clone / EXAMPLES / 'lugre_free.yaml').write_text(yaml.safe_dump(
-            {'parameters': {name: free[name] for name in self.FREE}}))
-        first, last = COMMANDS[FAILS]
-        done(capsys, first)
-        code, said, _ = answered(capsys, *shlex.split(last))
-        assert code == 3
-        assert all('THE MODEL DOES NOT FIT' in text for text in (said, part_of(IDENTIFICATION, FAILS)))
-        apart = self.SLIPS.search(said)
-        assert apart
-        assert int(apart[1]) >= 8
-        assert max(float(number) for number in apart.groups()[1:]) < 10.0, apart[0]   # %
-        simulations = re.search(r'(\d+) simulations', said)
-        assert simulations
-        assert int(simulations[1]) < self.MOST_SIMULATIONS

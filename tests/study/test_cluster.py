@@ -26,7 +26,7 @@ pytestmark = pytest.mark.slow
 
 if importlib.util.find_spec('distributed') is None:   # not imported: it takes a third of a second
     pytest.skip('needs the extra cluster', allow_module_level=True)
-LONG = ['sweep', 'paper_fig7', '--over', 'drive.velocity=1e-3:0.03:10000:log', '--duration', '40']   # five chunks
+LONG = ['sweep', 'paper_fig7', '--over', 'drive.velocity=1e-3:0.03:10000:log', '--duration', '15']   # five chunks
 ABSENT = 'tcp://127.0.0.1:9'
 _PATIENCE = 30.0   # s
 
@@ -95,7 +95,8 @@ def cluster(shared_cluster: Cluster) -> Iterator[Cluster]:
     shared_cluster.end_workers()
 
 
-def test_a_worker_killed_in_the_middle_changes_no_bit(cluster: Cluster, tmp_path: Path) -> None:
+def test_a_worker_killed_in_the_middle_changes_no_bit_and_ctrl_c_keeps_what_is_done(cluster: Cluster, tmp_path: Path
+                                                                                    ) -> None:
     cluster.add_worker()
     cluster.add_worker()
     out, alone = tmp_path / 'out', tmp_path / 'alone'
@@ -107,35 +108,20 @@ def test_a_worker_killed_in_the_middle_changes_no_bit(cluster: Cluster, tmp_path
     assert (process.returncode, error) == (0, ''), error
     assert '10000 of them run now' in said
     assert run([*LONG, '--out', str(alone)]) == 0
-    assert (out / POINTS_TABLE).read_bytes() == (alone / POINTS_TABLE).read_bytes()
+    whole = (alone / POINTS_TABLE).read_bytes()
+    assert (out / POINTS_TABLE).read_bytes() == whole
 
-
-def test_ctrl_c_keeps_what_is_done(cluster: Cluster, tmp_path: Path) -> None:
-    cluster.add_worker()
-    out = tmp_path / 'out'
-    process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', out)
-    wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
+    left = tmp_path / 'left'
+    process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', left)
+    wait_until(lambda: (left / PARTIAL).exists() and (left / PARTIAL).stat().st_size > 1000, 'the first chunk')
     process.send_signal(signal.SIGINT)
     said, error = process.communicate(timeout=_PATIENCE)
     assert process.returncode == 130, error
     assert (said, error.count('\n')) == ('', 1)
-    assert (out / PARTIAL).read_bytes().count(b'\n') % 2000 == 1
-    wait_until(lambda: not cluster.is_at_work(0), 'a worker that is free again')
-
-
-def test_a_scheduler_that_goes_is_reported(tmp_path: Path) -> None:
-    out = tmp_path / 'out'
-    with closing(Cluster(tmp_path)) as cluster:
-        cluster.add_worker()
-        process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', out,
-                          DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT='1s')
-        wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
-        cluster.scheduler.kill()
-        said, error = process.communicate(timeout=_PATIENCE)
-    assert process.returncode == 1
-    assert (said, error.count('\n')) == ('', 1), error
-    assert f'the scheduler {cluster.address} is gone' in error
-    assert '--resume' in error
+    rows = (left / PARTIAL).read_bytes()
+    assert whole.startswith(rows)
+    assert rows.count(b'\n') % 2000 == 1
+    wait_until(lambda: not cluster.is_at_work(1), 'a worker that is free again')
 
 
 def test_a_worker_without_this_package_is_reported(cluster: Cluster, tmp_path: Path, capsys: Capture) -> None:
@@ -211,3 +197,18 @@ def test_what_is_no_scheduler_gets_one_line_and_no_folder(stranger: type[Strange
 def test_workers_and_a_scheduler_exclude_each_other(tmp_path: Path, capsys: Capture) -> None:
     assert run([*LONG, '--scheduler', ABSENT, '--workers', '2', '--out', str(tmp_path / 'out')]) == 2
     assert 'exclude each other' in capsys.readouterr().err
+
+
+def test_a_scheduler_that_goes_is_reported(shared_cluster: Cluster, tmp_path: Path) -> None:
+    """The last one that uses it."""
+    out = tmp_path / 'out'
+    shared_cluster.add_worker()
+    process = started('stickslip_sim', *LONG, '--scheduler', shared_cluster.address, '--out', out,
+                      DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT='1s')
+    wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
+    shared_cluster.scheduler.kill()
+    said, error = process.communicate(timeout=_PATIENCE)
+    assert process.returncode == 1
+    assert (said, error.count('\n')) == ('', 1), error
+    assert f'the scheduler {shared_cluster.address} is gone' in error
+    assert '--resume' in error
