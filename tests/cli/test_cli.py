@@ -150,14 +150,6 @@ def test_the_receipt_in_the_documentation_is_that_of_its_command(tmp_path: Path)
         assert value == pytest.approx(receipt['energy'][name], rel=1e-9, abs=1e-12), name
 
 
-def test_plot(tmp_path: Path) -> None:
-    assert run(['simulate', 'paper_fig7', '--duration', '2', '--plot', str(tmp_path / 'p.png')]) == 0
-    assert (tmp_path / 'p.png').read_bytes().startswith(b'\x89PNG')
-    assert run(['simulate', 'paper_fig7', '--duration', '2', '--plot', str(tmp_path / 'p.svg')]) == 0
-    assert '<svg' in (tmp_path / 'p.svg').read_text()
-    assert sorted(path.name for path in tmp_path.iterdir()) == ['p.png', 'p.svg']
-
-
 def test_existing_files_are_replaced(tmp_path: Path) -> None:
     path = tmp_path / 'e.csv'
     path.write_text('old')

@@ -45,12 +45,11 @@ def test_without_a_scene_it_is_the_axis_of_the_paper(tmp_path: Path, capsys: Cap
         assert scene.axis.friction.static.initial == scene.axis.friction.kinetic.coefficient(0.0)
 
 
-@pytest.mark.parametrize('ending', ['png', 'svg'])
-def test_the_picture(ending: str, tmp_path: Path, capsys: Capture) -> None:
+def test_the_picture(tmp_path: Path, capsys: Capture) -> None:
     both = tmp_path / 'both.csv'
     both.write_text(CURVE.read_text() + ''.join(f'-{line}\n' for line in CURVE.read_text().splitlines()[2:]))
-    assert answered(capsys, 'friction', both, '--speed-unit', 'mm/s', '--plot', tmp_path / f'curve.{ending}')[0] == 0
-    assert (tmp_path / f'curve.{ending}').stat().st_size > 20_000
+    assert answered(capsys, 'friction', both, '--speed-unit', 'mm/s', '--plot', tmp_path / 'curve.svg')[0] == 0
+    assert (tmp_path / 'curve.svg').stat().st_size > 20_000
 
 
 def test_forces_of_both_directions(tmp_path: Path, capsys: Capture) -> None:

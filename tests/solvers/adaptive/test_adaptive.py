@@ -46,9 +46,9 @@ class TestAgainstTheExactEngine:
         assert found[1].mode == expected[1].mode
         assert found[1].position == pytest.approx(expected[1].position, abs=1e-10)
 
-    @pytest.mark.parametrize(('method', 'seconds'), [('RK45', 1e-7), ('DOP853', 1e-7), ('Radau', 1e-7),
-                                                     ('BDF', 1e-4), ('LSODA', 1e-5)])
-    @pytest.mark.parametrize('branches', [True, False])
+    @pytest.mark.parametrize(('method', 'seconds', 'branches'), [
+        ('RK45', 1e-7, True), ('DOP853', 1e-7, True), ('Radau', 1e-7, True), ('BDF', 1e-4, True), ('LSODA', 1e-5, True),
+        ('DOP853', 1e-7, False)])
     def test_every_method(self, method: str, seconds: float, branches: bool) -> None:
         for contact in (RIGID, COMPLIANT):
             axis = paper_axis(contact, branches=branches)

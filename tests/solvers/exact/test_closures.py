@@ -85,7 +85,7 @@ def agree(found: list[Event], axis: Axis, drive: InputProfile, force: InputProfi
 
 
 @pytest.mark.parametrize('closure', CLOSURES)
-@pytest.mark.parametrize('seed', [*range(5), 8, 10])
+@pytest.mark.parametrize('seed', [0, 1, 2, 8])
 def test_random_axes_have_the_events_of_the_reference(closure: str, seed: int) -> None:
     axis, drive, force = random_problem(closure, seed)
     if seed >= 8:
