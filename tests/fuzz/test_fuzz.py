@@ -9,8 +9,8 @@ from hypothesis import HealthCheck, given, settings
 
 from tests.fuzz.targets import Target, targets
 
-EXAMPLES = {'scene': 300, 'limits': 300, 'override': 300, 'bag': 150, 'distributions': 200, 'options': 200, 'study': 30,
-            'engine': 60, 'reference': 10}
+EXAMPLES = {'scene': 150, 'limits': 150, 'override': 150, 'bag': 75, 'distributions': 100, 'options': 100, 'study': 15,
+            'engine': 30, 'reference': 5}
 AT_EASE = settings(suppress_health_check=list(HealthCheck))
 
 
