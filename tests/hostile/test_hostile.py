@@ -114,6 +114,11 @@ KNOWN = {
         | draw.kinetic([0.0, 0.00022206069658608536], [0.7857669235010063, 0.349438724250315])
         | draw.constant(0.00031070307959729963, -49770.195483764175)
         | {'friction.static.delay': 74495.24881522506, 'initial.rest_time': 74495.24881522507}, 0.3),
+    'a breakpoint at which friction is so steep that its speed says the time to 1 ns': (
+        draw.axis(1.0, 11042.748312913618, 0.0, 9.80665) | draw.contact() | draw.static(0.6364111565212552)
+        | draw.kinetic([0.0, 0.0003903367743122229, 0.00039033692996265406],
+                       [0.6364111565212552, 0.636411138952865, 0.9546167347818828])
+        | draw.constant(0.00022595791444022452), 2.72),
     "Kato's law all but exponential under a sinusoid": (
         KATO | {'drive.amplitudes': [0.0005], 'drive.frequencies': [3.0], 'drive.phases': [0.1]}, 1.0),
 }
@@ -145,6 +150,25 @@ def test_nothing_is_found_wrong() -> None:
 def test_a_scene_that_was_judged_wrong_is_right(name: str) -> None:
     values, duration = KNOWN[name]
     assert judge_again(Case(values, duration), name, reference_too=False) == []
+
+
+def test_static_friction_that_grows_at_another_pace_backwards_has_its_mirror() -> None:
+    values = (
+        draw.axis(0.3288631327083222, 75.96179940463232, 3.559400307358461, 0.634053678166018)
+        | draw.contact(14484.959926784997, 207.05584678557912)
+        | draw.static(0.4465107385689329, 1.0847314600674487, 0.0010919341287886721, 'hyperbolic')
+        | draw.kinetic([0.0, 0.0014016217145850442], [0.4465107385689329, 0.20766323124768016])
+        | {'friction.static.backward.initial': 0.0, 'friction.static.backward.limit': 0.0,
+           'friction.static.backward.time_constant': 0.005870751414489745,
+           'friction.static.delay': 0.018327716641371044, 'friction.kinetic.backward.coefficients': [0.0, 0.0],
+           'friction.kinetic.backward.end_slope': 0.0, 'normal_load.course': 'table',
+           'normal_load.times': [0.0, 2.65536484021828, 4.0112716121144105],
+           'normal_load.forces': [0.0, -0.14150061307215842, -0.4134769168690229],
+           'normal_load.period': 5.0032182166500725, 'initial.stretch': -0.009054261187449158}
+        | {'force.course': 'constant', 'force.constant': 0.10391245435299258}
+        | draw.steps('drive', 'velocities', [0.0, 1.3256421049903107, 3.7643910571801076],
+                     [0.0, 0.0008935195261258836, 0.0]))
+    JUDGES['images'](run(Case(values, 3.6).parts), RNG)
 
 
 def test_a_good_run_passes_every_judge() -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 from stickslip_sim.axis import Axis, CompliantContact
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode, Sample
-from stickslip_sim.proof.axes import Parts, instant
+from stickslip_sim.proof.axes import instant
 
 from ..case import Run, borders
 from .motion import EPSILON, Long, Table, Tables, axis_at
@@ -38,6 +38,7 @@ class Node:
     excess: Any
     excess_noise: Any
     new_force: bool     # an input may have jumped at this instant
+    unbalanced: Any     # N, by which rounding of a speed on steep friction has set the spring apart from m a
 
     @property
     def label(self) -> str:
@@ -51,15 +52,17 @@ def nodes(run: Run, tables: Tables) -> Iterator[Node]:
     jumps = {Instant(0.0, 0.0)}
     for border in borders(parts):     # the end, too: an input may jump there
         jumps.add(instant(border))
-    excess, mode = (Long(0), Long(0)), Mode.STICK
+    excess, mode, unbalanced = (Long(0), Long(0)), Mode.STICK, Long(0)
     stretches = [(run.at_start, run.start), *run.stretches]
     for events, sample in stretches:
         for event in events:
             # a contact that yielded leaves no excess
             excess = (Long(0), Long(0)) if mode == Mode.YIELDING else _excess(event, excess, tables)
             mode = event.mode
-            yield _node_of_event(event, *excess, event.instant in jumps, parts)
-        yield _node_of_sample(sample, *excess)
+            axis = axis_at(parts, event.instant)
+            unbalanced = _unbalanced(event, unbalanced, excess[0], tables, axis)
+            yield _node_of_event(event, *excess, event.instant in jumps, axis, unbalanced)
+        yield _node_of_sample(sample, *excess, unbalanced)
 
 
 def _excess(event: Event, excess: tuple[Any, Any], tables: Tables) -> tuple[Any, Any]:
@@ -77,8 +80,22 @@ def _excess(event: Event, excess: tuple[Any, Any], tables: Tables) -> tuple[Any,
             table.psi(segment).slope * speed) / (psi * psi)
 
 
-def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, parts: Parts) -> Node:
-    axis = axis_at(parts, event.instant)
+def _unbalanced(event: Event, before: Any, excess: Any, tables: Tables, axis: Axis) -> Any:
+    """Return how far the spring may be from m a and friction, N, beyond rounding of forces: since the last rest.
+
+    A breakpoint comes when the speed is there, to rounding; on a steep piece that is a time in which the spring moves.
+    """
+    if event.mode not in SLIP:
+        return Long(0)
+    if event.kind != EventKind.KNOT:
+        return before
+    speed, table = abs(event.velocity), tables.along(event.direction)
+    sides = [table.segment(speed, rising) for rising in (False, True)]
+    steepest = max(abs(table.kinetic(side).slope) + abs(excess * table.psi(side).slope) for side in sides)
+    return max(before, 2 * EPSILON * Long(axis.normal_force) * steepest * Long(speed))
+
+
+def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, axis: Axis, unbalanced: Any) -> Node:
     contact, kinetic = axis.contact, axis.friction.along(event.direction).kinetic
     deflection = 0.0
     if isinstance(contact, CompliantContact) and (event.kind == EventKind.YIELD or event.velocity):
@@ -86,13 +103,13 @@ def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, p
     elif isinstance(contact, CompliantContact) and event.mode == Mode.STICK and not contact.undeflected:
         deflection = event.direction * axis.normal_force * kinetic.coefficients[0] / contact.stiffness
     return Node(event.instant, event, event.mode, event.direction, event.position, event.velocity, event.drive_force,
-                deflection, 0.0, excess, excess_noise, jumped)
+                deflection, 0.0, excess, excess_noise, jumped, unbalanced)
 
 
-def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any) -> Node:
+def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any, unbalanced: Any) -> Node:
     return Node(sample.instant, None, sample.mode, sample.direction, sample.position, sample.velocity,
                 sample.drive_force, sample.contact_deflection, sample.rest_time, excess,
-                excess_noise, True)
+                excess_noise, True, unbalanced)
 
 
 _GUARDS = {Mode.STICK: ('the static limit', 'the static limit backwards'),

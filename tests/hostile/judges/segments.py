@@ -86,7 +86,7 @@ def _setting(parts: Parts, tables: Tables, begin: Node, came: float) -> _Setting
         sum((abs(Long(wave.sinusoid.amplitude)) * (1 if wave.is_force else h) for wave in inputs.waves), Long(0)),
         abs(inputs.force.value), abs(held.now) + normal * most * (1 if begin.mode == Mode.STICK else 0.1)])
     return _Setting(parts, axis, inputs, held, forces, FORCES * forces + EPSILON * Long(axis.drive_stiffness)
-                    * Long(came))
+                    * Long(came) + begin.unbalanced)
 
 
 def _segment(acting: _Setting, begin: Node, end: Node, length: Any) -> Segment:

@@ -127,7 +127,9 @@ def _loaded_limits(p: Parameters, s: State, t: float) -> GuardLimits:
 def _window(p: Parameters, s: State) -> float:
     """Return how long the bounds on a normal force that varies hold, s: a time in which it, or mu_s, changes."""
     fastest = fastest_sinusoid(s)
-    return 2.0 / fastest if fastest > 0.0 else static_numbers(p, 1.0).tau
+    if fastest > 0.0:
+        return 2.0 / fastest
+    return min(static_numbers(p, 1.0).tau, static_numbers(p, -1.0).tau)   # of both, as in the mirror
 
 
 @inlined
