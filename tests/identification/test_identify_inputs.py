@@ -44,6 +44,30 @@ def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
     assert found.runs < 2000
 
 
+JERKY = changed(MOTOR, {'axis.normal_force': 1000.0, 'friction.kinetic.coefficients': (0.1,), 'force.frequency': 0.8,
+                        'friction.kinetic.end_slope': 0.2, 'force.amplitude': 300.0})
+
+
+@pytest.mark.parametrize('seed', [14, 19])
+def test_noise_of_a_motor_force_decides_when_a_slider_breaks_away(seed: int, tmp_path: Path) -> None:
+    """A break-away a reading late is worth many times the noise of a sample; static friction followed each of them."""
+    samples, random = stickslip.simulate(JERKY, 4.0).samples, np.random.default_rng(seed)
+    shape = samples['time'].shape
+    run = as_run(tmp_path / 'run', samples['time'], {
+        'position': samples['position'] + random.normal(0.0, 1e-6, shape),
+        'drive_force': samples['external_force'] + random.normal(0.0, 5.0, shape)})
+    start = changed(JERKY, {'axis.mass': 110.0, 'friction.static.initial': 0.23, 'force.course': 'constant',
+                            'friction.kinetic.coefficients': (0.12,)})
+    found = stickslip.identify(run, start, {
+        'axis.mass': between(60.0, 150.0), 'friction.kinetic.coefficients[0]': between(0.05, 0.15),
+        'friction.static.initial': between(0.15, 0.4)})
+    assert found.fits, found.misfits
+    for name, right in (('friction.static.initial', 0.2), ('friction.kinetic.coefficients[0]', 0.1)):
+        low, high = estimate_of(found, name).best_interval
+        assert low < right < high
+        assert high - low < 0.02 * right
+
+
 @few_starts()
 def test_a_motor_force_on_an_axis_that_is_not_quite_the_model(tmp_path: Path) -> None:
     """Its friction varies along the way; the scene that is found still follows the position of the whole run."""

@@ -4,6 +4,7 @@
 
 from collections.abc import Container, Sequence
 from copy import copy
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
@@ -12,9 +13,11 @@ from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
 from ..core.time_grid import Instants
+from ..core.types import EventKind
+from ..scene.build import Dynamics
 from .axis_model import OUTPUT_PLACES, AxisModel
 from .direct import DirectMotion, direct_drive, direct_motion, force_noise_of, sliding_motion
-from .force_noise import NoiseFilter, filters_of, white_of
+from .force_noise import ERRORS, NoiseFilter, filters_of, white_of, with_static_times
 from .free_parameters import FreeParameter, Region, region_of, values_at
 from .least_squares import STEP, Residuals
 from .motions import MeasuredMotion, ends_in_rest, has_break_away, stops_of, track_of
@@ -87,6 +90,7 @@ class FitProblem:
         self.widths = np.array([one.width for one in parameters])
         self._mass, self._force_noise = model.scene.axis.mass, force_noise_of(measurement)
         self._filters: tuple[NoiseFilter | None, ...] = (None,) * len(measurement.channels)
+        self._noisy_step = _NOISY_STEP
         self._sliding = self._of_sliding()
         self.take_input_noise_of(self.values(self.with_direct(self.start)))
 
@@ -124,7 +128,7 @@ class FitProblem:
 
         Between two readings the break-away does not move with its limit, and then it goes to another reading.
         """
-        return np.array([_NOISY_STEP if self.model.is_pushed and one.name.startswith(_STATIC) else STEP
+        return np.array([self._noisy_step if self.model.is_pushed and one.name.startswith(_STATIC) else STEP
                          for one in self.parameters])
 
     def take_input_noise_of(self, values: Numbers) -> bool:
@@ -135,7 +139,42 @@ class FitProblem:
         was, self._mass = self._mass, float(np.exp(_STEP * np.round(np.log(dynamics.axis.mass) / _STEP)))
         self._filters = filters_of(self.measurement, self._force_noise, self._mass, self._stops,
                                    self._starts_in_motion)
-        return self._mass != was
+        self._filters = self._of_break_aways(dynamics, values)
+        return self._mass != was or any(one is not None and one.break_aways for one in self._filters)
+
+    def _of_break_aways(self, dynamics: Dynamics, values: Numbers) -> tuple[NoiseFilter | None, ...]:
+        """Return the filters with what noise of the force does to the break-aways that there are with trial values."""
+        times, deviations = self.measurement.times, self.measurement.force_deviations
+        motion = self.model.motion(dynamics, 0.0, dynamics.initial, float(times[-1]))
+        if deviations is None or motion is None or all(one is None for one in self._filters):
+            return self._filters
+        rested, begins, shares = 0.0, [], []
+        for event in motion.events:
+            if event.kind == EventKind.STICK:
+                rested = event.time
+            elif event.kind == EventKind.BREAKAWAY and event.static_coefficient > 0.0:
+                begins.append(0.5 * (rested + event.time))
+                held = event.static_coefficient * dynamics.axis.normal_force
+                shares.append(float(np.interp(event.time, times, deviations)) / held)
+        at = instants_of(times)
+        usual = float(np.median(shares)) if shares else 0.0
+        here = motion.samples(at)
+        if usual == 0.0 or here is None:
+            return self._filters
+        self._noisy_step = min(usual, _NOISY_STEP)
+        moved = []
+        for error, root in ERRORS:
+            friction = with_static_times(dynamics.axis.friction, max(1.0 + usual * error, 0.0))
+            other = dynamics._replace(axis=replace(dynamics.axis, friction=friction))
+            rows = self.model.samples(other, 0.0, dynamics.initial, at)
+            if rows is not None:
+                moved.append((root, rows))
+        edges = np.append(np.searchsorted(times, begins), len(times))
+        places = [OUTPUT_PLACES[channel.name] for channel in self.measurement.channels]
+        gains = [self.model.gain(values, channel.name)[1] for channel in self.measurement.channels]
+        return tuple(one and one.of_break_aways([gain * root * (rows[:, k] - here[:, k]) for root, rows in moved],
+                                                edges, np.array(shares) / usual)
+                     for one, k, gain in zip(self._filters, places, gains, strict=True))
 
     def white(self, k: int, residuals: Numbers) -> Numbers:
         """Return the residuals (n,) of the k-th channel without what the noise of a measured force does to them."""

@@ -15,6 +15,10 @@ Friction, which lets the velocity forget the noise within m/d, is left out: with
 encoder say as much as each other it does nothing.  A stop makes the slider forget it at once, which the filter does not
 know: the few samples in which it learns that count nothing.
 
+Noise decides, too, when a slider breaks away: later by δ it has the velocity (F_s − F_k) δ/m less from then on, many
+times the noise of a sample.  That is one error of the force for each break-away: motions with other errors show what
+each does to the residuals, and with the covariance 1 + Σ p(z) Δ(z) Δ(z)ᵀ of these they are made white.
+
 Source: A. C. Harvey, Forecasting, Structural Time Series Models and the Kalman Filter (1989), 2.3 and 4.3.
 """
 
@@ -27,6 +31,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..axis import Friction
 from ..core.arrays import Numbers
 from .motions import MeasuredMotion
 from .readings import LINE, Channel, InputReadings, SensorReadings, noise_of, own_noise_of, quantum_of
@@ -35,6 +40,17 @@ _NOTICEABLE = 0.1   # of the noise of a sensor: less by the noise of the force o
 _GAP = 1.5          # periods: after longer ones the filter starts anew
 _BEFORE = 5         # samples before a stop, which in the simulation may come a little earlier
 _LEFT = 0.01        # of a step that the filter has not learnt yet
+
+
+class BreakAwayNoise(NamedTuple):
+    """What the error of the force at a break-away does from the row `begin` on: residuals in `ways` (n, r), too large.
+
+    They are left with the `shares` (r,) of what they are.
+    """
+
+    begin: int
+    ways: Numbers
+    shares: Numbers
 
 
 class NoiseFilter(NamedTuple):
@@ -51,6 +67,7 @@ class NoiseFilter(NamedTuple):
     begins: tuple[int, ...]
     counts: Numbers
     roots: Numbers
+    break_aways: tuple[BreakAwayNoise, ...] = ()
 
     def white(self, residuals: Numbers) -> Numbers:
         """Return what is new in each of the residuals (n,), in their unit."""
@@ -63,7 +80,26 @@ class NoiseFilter(NamedTuple):
             before = 0.0 if first == 0 else part[0]   # at the start of the run the simulation is right; else unknown
             state = lfiltic(numerator, self.denominator, np.zeros(self.order), np.full(self.order, before))
             found[first:last], _ = lfilter(numerator, self.denominator, part, zi=state)
-        return found * self.counts
+        found *= self.counts
+        for one in self.break_aways:
+            part = found[one.begin:one.begin + len(one.ways)]
+            part -= one.ways @ ((1.0 - one.shares) * (one.ways.T @ part))
+        return found
+
+    def of_break_aways(self, changes: Sequence[Numbers], edges: NDArray[np.intp], scales: Numbers) -> 'NoiseFilter':
+        """Return the filter that knows how residuals (n,) change by errors of the force at break-aways.
+
+        The k-th break-away moves the rows from `edges[k]` to the next edge; `scales` (k,) are factors on its changes.
+        The root of the probability of each error is in its change.
+        """
+        moved = np.stack([self.white(change) for change in changes], axis=1) / self.deviation
+        found = []
+        for begin, end, scale in zip(edges[:-1], edges[1:], scales, strict=True):
+            ways, sizes, _ = np.linalg.svd(scale * moved[begin:end], full_matrices=False)
+            large = sizes > _LEFT
+            if large.any():
+                found.append(BreakAwayNoise(int(begin), ways[:, large], (1.0 + sizes[large]**2)**-0.5))
+        return self._replace(break_aways=tuple(found))
 
     def weighted(self, residuals: Numbers) -> Numbers:
         """Return `white` residuals (n,) times the roots of their weights."""
@@ -130,6 +166,20 @@ def white_of(filters: Sequence[NoiseFilter | None], k: int, channel: Channel, re
     return residuals if own is None else np.asarray(own.white(residuals) * (channel.resolution / own.deviation))
 
 
+# The errors of a force at a break-away that are tried, in standard deviations, and the roots of their probabilities.
+
+_ERRORS = np.array([z for z in np.linspace(-3.0, 3.0, 13) if z != 0.0])
+ERRORS = tuple(zip(_ERRORS.tolist(), np.sqrt(np.exp(-0.5 * _ERRORS**2) / (2.0 * (2.0 * math.pi)**0.5)).tolist()))
+
+
+def with_static_times(friction: Friction, factor: float) -> Friction:
+    """Return friction whose static coefficients are multiplied, but not below the kinetic one at rest."""
+    static, least = friction.static, friction.kinetic.coefficients[0]
+    initial = max(factor * static.initial, least)
+    return replace(friction, static=replace(static, initial=initial, limit=max(factor * static.limit, initial)),
+                   backward=friction.backward and with_static_times(friction.backward, factor))
+
+
 # The measured force on a slider, with less of the sensor's noise in it while the slider rests.
 #
 # In a simulation, noise makes the slider break away early: at the first reading above static friction, before the force
@@ -152,18 +202,25 @@ def with_quiet_rests(measurement: SensorReadings, motions: Sequence[MeasuredMoti
     ends = [times[0], *(motion.end for motion in motions)]
     begins = [*(motion.passed[0] for motion in motions), times[-1]]
     at_rest = np.any([(times >= end) & (times <= begin) for end, begin in zip(ends, begins, strict=True)], axis=0)
-    values = np.where(at_rest, _smoothed(readings.values), readings.values)
-    return replace(measurement, force=InputReadings(times, values, LINE).profile())
+    smooth, deviations = _smoothed(readings.values)
+    values = np.where(at_rest, smooth, readings.values)
+    return replace(measurement, force=InputReadings(times, values, LINE).profile(), force_deviations=deviations)
 
 
-def _smoothed(values: Numbers) -> Numbers:
-    """Return readings (n,) smoothed by parabolas, each as long as it follows them, so that a step stays a step."""
+def _smoothed(values: Numbers) -> tuple[Numbers, Numbers]:
+    """Return readings (n,) smoothed by parabolas, each as long as it follows them, so that a step stays a step.
+
+    The second are the standard deviations (n,) that the noise has left.
+    """
     from scipy.ndimage import uniform_filter1d  # both take a while, and only a measured force needs them
     from scipy.signal import savgol_filter
 
     variance, found = noise_of(values, quantum_of(values))**2, values
+    left_of_noise = np.ones(len(values))
     for length in (length for length in _LENGTHS if length < len(values)):
         smooth = savgol_filter(values, length, 2)
         left = uniform_filter1d((values - smooth)**2, length)
-        found = np.where(left <= (1.0 + _CHANCE * (2.0 / length)**0.5) * variance, smooth, found)
-    return np.asarray(found)
+        follows = left <= (1.0 + _CHANCE * (2.0 / length)**0.5) * variance
+        found = np.where(follows, smooth, found)
+        left_of_noise[follows] = 0.75 * (3.0 * length**2 - 7.0) / (length * (length**2 - 4.0))
+    return np.asarray(found), np.sqrt(variance * left_of_noise)

@@ -45,6 +45,7 @@ from .identified import (
     StartEnd,
 )
 from .identified_scene import with_measured_inputs
+from .least_squares import square_cost
 from .many_fits import Keeper, fits_from
 from .motions import MeasuredMotion, motions_of, track_of
 from .other_laws import CRITERION, along_the_run, best_of_slips, criterion_of, with_laws
@@ -71,6 +72,8 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     best = ends[0]
     point = best.solution.point
     problem.take_input_noise_of(problem.values(point))
+    if best.of_slips is None:   # under the noise of the inputs as it is there
+        best = best._replace(solution=best.solution._replace(cost=square_cost(problem.of_run()(point))))
     whole = problem.stretches(None if best.of_slips is None else 0)
     fitted = problem.fitted(point, whole)
     assert fitted is not None
@@ -99,7 +102,7 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
         estimates=estimates, correlation=known.correlation, channels=channels,
         misfits=tuple(misfits),
         combinations=combinations_of(information - problem.information_beforehand(), problem.parameters),
-        starts=tuple(_start_end(problem, end, end is best) for end in ends),
+        starts=tuple(_start_end(problem, end, end is ends[0]) for end in ends),
         laws=(LawFit(str(scene.values['friction.static.law']), str(scene.values['friction.kinetic.law']),
                      criterion_of(problem, best.solution.cost), len(problem.parameters), best.solution.cost, True),),
         slips=_slips(problem, values), criterion=CRITERION, cost=best.solution.cost,

@@ -266,7 +266,8 @@ class SensorReadings:
     """Channels over `times` (n,), s since the start of the simulation, which is `shift` s of the measurement.
 
     `drive` and `force` are the inputs, where they were measured, made of `drive_readings` and `force_readings`;
-    `period` (s) is the median time between samples.
+    `force_deviations` (n,) are the standard deviations of a force that was smoothed, N; `period` (s) is the median time
+    between samples.
     """
 
     times: Numbers
@@ -278,6 +279,7 @@ class SensorReadings:
     notes: tuple[str, ...]
     drive_readings: InputReadings | None = None
     force_readings: InputReadings | None = None
+    force_deviations: Numbers | None = None
 
     @property
     def instants(self) -> Instants:

@@ -198,6 +198,7 @@ def fit_from(problem: FitProblem, start: Numbers) -> Ended:
 def _whole_from(problem: FitProblem, start: Numbers, point: Numbers) -> Ended:
     """Return the best fit of the whole run near a point, to which a start has led."""
     problem.model.take_tolerance(None)
+    problem.take_input_noise_of(problem.values(point))
     solution = _of_whole(problem, point)
     if (better := _beyond_noise(problem, solution.point)) is not None:
         solution = _of_whole(problem, better)
