@@ -5,6 +5,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -70,6 +71,19 @@ class TestRuns:
         given = circular_test(paths, NominalCircle(0.04, (-0.05, 0.001)))
         assert given.nominal == (-0.05, 0.001, 0.04)
         assert circular_test(paths, NominalCircle(radius=0.04)).nominal == pytest.approx((-RADIUS, 0.0, 0.04))
+
+    def test_the_nominal_circle_of_closed_loops_is_that_of_their_setpoints(self) -> None:
+        """Drives that go ahead of their setpoints by a tenth: the slider's circle is that much too large."""
+        runs = [(name, replace(run, setpoint={
+            'time': run.samples['time'], 'position': run.samples['drive_position'] / 1.1})) for name, run in circle()]
+        found = circular_test(paths_of(runs), NominalCircle())
+        assert found.nominal.radius == pytest.approx(RADIUS / 1.1, abs=1e-12)
+
+    @pytest.mark.parametrize('again', ['x', './x/'])
+    def test_the_same_run_twice(self, again: str) -> None:
+        (_, run), _ = circle()
+        with pytest.raises(InputError, match='two runs: this is the same twice'):
+            paths_of([('x', run), (again, run)])
 
     def test_both_senses_and_what_only_they_have(self) -> None:
         soft = 0.5 * STIFFNESS

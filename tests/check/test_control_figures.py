@@ -183,10 +183,13 @@ def test_blocks_of_any_size_give_the_same_figures(monkeypatch: pytest.MonkeyPatc
 
 
 class TestReferenceFile:
-    def test_columns_and_units(self, tmp_path: Path, still: SimulatedRun) -> None:
-        (tmp_path / 'move.csv').write_text('t [ms];x;other\n500;0;1\n1000;20;2\n1500;10;3\n2500;60;4\n')
-        path = limits_file(tmp_path, 'reference: {file: move.csv, time: t, time_unit: ms, position: x, position_unit: '
-                                     'mm}\nlimits: {following_error_rms: {max: 1.0}}')
+    @pytest.mark.parametrize(('heading', 'units'), [
+        ('t [ms];x;other', 'time_unit: ms, position_unit: mm'), ('t [ms];x [mm];other', 'position_unit: mm'),
+        ('t (ms);x [mm];other', 'time_unit: ms')])
+    def test_columns_and_units(self, heading: str, units: str, tmp_path: Path, still: SimulatedRun) -> None:
+        (tmp_path / 'move.csv').write_text(f'{heading}\n500;0;1\n1000;20;2\n1500;10;3\n2500;60;4\n')
+        path = limits_file(tmp_path, f'reference: {{file: move.csv, time: t, position: x, {units}}}\n'
+                                     'limits: {following_error_rms: {max: 1.0}}')
         (outcome,) = outcomes_of(load_limits(path), still)
         assert outcome.value == of_reference('check: following_error_rms', still)
 
@@ -196,10 +199,12 @@ class TestReferenceFile:
         ('{file: move.csv, position: x, column: y}', ['reference.column', 'one of file, time, position']),
         ('{file: move.csv, position: x, position_unit: s}', ['reference.position_unit', 'one of m, mm']),
         ('{file: 3}', ['reference.file = 3']),
+        ('{file: far.csv, position: x}', ['reference.position', 'x [furlong]', 'one of the units m, mm']),
         ('{file: back.csv, position: x}', ['back.csv line 3', 'a time after the one before it']),
     ])
     def test_refusals(self, text: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
         (tmp_path / 'move.csv').write_text('time,x\n0.0,0.0\n1.0,1.0\n')
+        (tmp_path / 'far.csv').write_text('time,x [furlong]\n0.0,0.0\n1.0,1.0\n')
         (tmp_path / 'back.csv').write_text('time,x\n1.0,0.0\n0.5,1.0\n')
         path = limits_file(tmp_path, f'reference: {text}\nlimits: {{following_error: {{max: 1.0}}}}')
         line = refused(capsys, 'paper_fig7', '--duration', '1', '--limits', path)

@@ -3,6 +3,7 @@
 """Two axes that follow a circle: their path out of two runs, or out of a bag of both, and what limits on it come to."""
 
 from collections.abc import Sequence
+from os.path import normpath
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +15,7 @@ from ..figures.circular import Circle, CircularTest, least_squares_circle, turns
 from ..recording import RecordedRun
 from ..runs import Run
 from .limits import CheckedSpan, LimitOutcome, Limits, NominalCircle, check_fit
+from .observed_run import setpoint_of
 from .report import Checked
 
 _FIELDS = ('time', 'position', 'drive_position')
@@ -21,7 +23,10 @@ OPTION = '--circle'
 
 
 class Path(NamedTuple):
-    """Two axes at times (s); columns of `actual` and `commanded` are x and y, m, of the sliders and of the drives."""
+    """Two axes at times (s); columns of `actual` and `commanded` are x and y, m.
+
+    Actual are the sliders, commanded their setpoints, or else their drives.
+    """
 
     name: str
     time: Numbers
@@ -37,7 +42,7 @@ class Path(NamedTuple):
 
 class _Axis(NamedTuple):
     name: str
-    columns: Sequence[Numbers]   # of _FIELDS
+    columns: Sequence[Numbers]   # of _FIELDS; of a run with a setpoint that, not the drive
 
 
 def paths_of(runs: Sequence[tuple[str, Run]]) -> list[Path]:
@@ -62,11 +67,16 @@ def _axes_of(name: str, run: Run) -> list[_Axis]:
         columns = run.state_columns(_FIELDS)
     else:
         columns = run.states
-    return [_Axis(name, [columns[field] for field in _FIELDS])]
+    wanted = setpoint_of(run)
+    return [_Axis(name, [columns['time'], columns['position'],
+                         wanted.at(columns['time']) if wanted else columns['drive_position']])]
 
 
 def _path(x: _Axis, y: _Axis) -> Path:
     """Return the path of two axes, at the times that both have."""
+    if normpath(x.name) == normpath(y.name):
+        raise InputError(OPTION, f'{x.name}, {y.name}', 'two runs: this is the same twice', 'give the run of y behind '
+                         'that of x, or once a bag of both')
     for axis in (x, y):
         if not np.isfinite(axis.columns[1]).all():
             raise RecordingError(f'{axis.name}: its position was not measured; import that column too')

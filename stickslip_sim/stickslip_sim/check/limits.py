@@ -14,7 +14,7 @@ import numpy as np
 
 from ..core.errors import InputError, RecordingError, suggestion
 from ..figures.positioning import PositionFigures
-from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, wanted_column
+from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, column_of
 from ..runs import Run
 from ..scene import Parameter
 from ..scene.load import named, read_text
@@ -42,6 +42,7 @@ from .observed_run import (
     ObservedMotion,
     Reference,
     commands_of,
+    first_command_of,
     motion_blocks,
     observed_motion,
     setpoint_of,
@@ -212,11 +213,12 @@ class Limits:
                                  'left out in a check of one axis', 'check each axis by itself with other limits'
                                  if are_two else 'check two axes: --circle RUN_X RUN_Y')
 
-    def reference_at(self, first_command: float | None) -> Reference | None:
-        """Return the reference in times of a run with this first command."""
-        if self.reference is None or first_command is None or not self.window.is_from_command:
-            return self.reference
-        return self.reference.later(first_command)
+    def reference_for(self, run: Run) -> Reference | None:
+        """Return the reference in times of a run, or else its setpoint."""
+        first = first_command_of(run)
+        if self.reference is None or first is None or not self.window.is_from_command:
+            return self.reference or setpoint_of(run)
+        return self.reference.later(first)
 
 
 def load_limits(path: str) -> Limits:
@@ -332,9 +334,10 @@ def _reference_of_file(given: Mapping[str, object], folder: Path) -> Reference:
     for name, value in given.items():
         _checked(replace(_NAME, name=name), 'reference', value)
     words = {name: str(value) for name, value in given.items()}
-    wanted = [wanted_column(f'reference.{name}', words.get(name, name), f'reference.{name}_unit',
-                            words.get(f'{name}_unit'), units) for name, units in _COLUMNS.items()]
-    table = CsvTable('reference.file', folder / words['file'], wanted, MOST_POINTS)
+    path = folder / words['file']
+    wanted = [column_of(path, [words.get(name, name)], units, f'reference.{name}', words.get(f'{name}_unit'),
+                        f'reference.{name}_unit') for name, units in _COLUMNS.items()]
+    table = CsvTable('reference.file', path, wanted, MOST_POINTS)
     times, positions = table.columns
     late = np.flatnonzero(np.diff(times) <= 0.0)
     if len(late):
@@ -379,8 +382,7 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, has_timing, commands)
     found = [_begun(limit, motion, commands, limits.needs_commands) for limit in limits.limits]
     open_ones = [one for one in found if isinstance(one, _Open)]
-    reference = limits.reference_at(commands.first if commands else None) or setpoint_of(run)
-    for block in motion_blocks(states_of(run), motion.events, reference):
+    for block in motion_blocks(states_of(run), motion.events, limits.reference_for(run)):
         for one in open_ones:
             one.take(block)
     outcomes = [one.outcome() if isinstance(one, _Open) else one for one in found]
@@ -396,13 +398,12 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
 
 def positions_of(limits: Limits, run: Run) -> list[PositionFigures]:
     """Return the figures of ISO 230-2 of each target within the window of the file; raises InputError without any."""
-    motion, commands = observed_motion(run), commands_of(run)
-    span = limits.window.at(commands.first if commands else None) or CheckedSpan()
+    motion = observed_motion(run)
+    span = limits.window.at(first_command_of(run)) or CheckedSpan()
     begin = motion.begin if span.begin is None else span.begin
     end = motion.end if span.end is None else span.end
     measurement = Positioning(motion.cut(begin, end), *limits.positioning)
-    reference = limits.reference_at(commands.first if commands else None)
-    for block in motion_blocks(states_of(run), motion.events, reference):
+    for block in motion_blocks(states_of(run), motion.events, limits.reference_for(run)):
         measurement.take(block.cut(begin, end))
     return measurement.positions
 

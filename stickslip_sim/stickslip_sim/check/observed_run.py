@@ -17,7 +17,7 @@ from ..recording import MeasuredRun, RecordedRun
 from ..recording.reader import EVENT_FIELDS
 from ..recording.run_outline import StatesSeen
 from ..runs import Run, SimulatedRun
-from ..runs.run import kept
+from ..runs.run import STANDS, kept
 from ..runs.samples import gathered, joined
 
 # What was seen of an axis: its state at the samples, block by block, its transitions at their exact times.
@@ -157,7 +157,6 @@ _SEEN = ('time', 'position', 'velocity', 'drive_position', 'mode')
 _STATE_FIELDS = (*_SEEN, 'drive_velocity')
 _SEEN_FIELDS = (*_SEEN, 'step')   # the steps are for `missing_steps`
 _NANOSECOND = 1e-9
-STANDS = 1e-12   # m, from one sample to the next: less is rounding of a command that stands
 
 
 @dataclass(frozen=True)
@@ -227,6 +226,12 @@ def commands_of(run: Run) -> KnownCommands | None:
     times = (block['time'] for block in run.state_blocks(['time']))
     return KnownCommands(next((float(time[np.searchsorted(time, found)]) for time in times
                                if len(time) and time[-1] >= found), None))
+
+
+def first_command_of(run: Run) -> float | None:
+    """Return from when on the first drive velocity holds, s; None where none is known."""
+    commands = commands_of(run)
+    return commands.first if commands else None
 
 
 def gaps_in(run: Run) -> Iterator[str]:

@@ -15,13 +15,14 @@ from ..core.types import Progress, Sample, tuple_of
 from ..inputs import SceneOrName, scene_of
 from ..realtime.commands import Watchdog
 from ..runs.samples import MOST_IN_MEMORY
-from ..runs.simulated import CostMeter, check_run_times
+from ..runs.simulated import CostMeter
 from ..scene import Scene, scene_from_values
 from ..simulation import Measured
 from .run import ClosedLoopRun, LoopRecord
 from .setpoint import Given, as_setpoints, setpoints_at
 
 _REPORTED_EVERY = 1000   # steps
+_ROUNDED = 1e-6          # steps, that a duration may be off by: 0.1 + 0.2 s
 _DRIVE_FORCE = Sample._fields.index('drive_force')
 _ROW = Struct(f'{len(Sample._fields)}d')
 
@@ -49,12 +50,14 @@ def close_loop(controller: Callable[[float, Measurement], Any], scene: SceneOrNa
 
 def steps_of(scene: Scene, duration: float) -> Instants:
     """Return the times of the steps of a run; raises InputError."""
-    check_run_times(duration, None)
-    count = int(decimal(float(duration)) / scene.time.step)
-    if not 1 <= count < MOST_IN_MEMORY:
-        raise InputError('duration', duration, f'a step ({float(scene.time.step):g} s) to {MOST_IN_MEMORY - 1} steps',
-                         'give the seconds to simulate')
-    return instants(scene.time.step, 0, count + 1)
+    step, most = scene.time.step, (MOST_IN_MEMORY - 1) * scene.time.step
+    allowed = f'{float(step):g} to {float(most):g} s, a whole number of steps of {float(step):g} s'
+    if not step <= duration <= most:
+        raise InputError('duration', duration, allowed, 'give the seconds to simulate')
+    steps = decimal(float(duration)) / step
+    if abs(steps - round(steps)) > _ROUNDED:
+        raise InputError('duration', duration, allowed, f'for example {float(round(steps) * step):.12g}')
+    return instants(step, 0, round(steps) + 1)
 
 
 def own_controller(controller: object, scene: Scene) -> OwnController:
@@ -138,7 +141,7 @@ class _Loop:
                 try:
                     answer = ask(time, tuple_of(Measurement, (*held, row[_DRIVE_FORCE], measured is None, setpoint)))
                 except Exception as error:
-                    own.failed(error, step, time)
+                    own.failed(error, step, time, setpoint is None)
                 if type(answer) is float and -limit <= answer <= limit:
                     velocity = answer
                 else:

@@ -14,7 +14,7 @@ from ..controllers.own_controller import raised
 from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..core.types import tuple_of
-from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, Wanted, heading_of, named_unit, wanted_column
+from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, column_of
 from ..scene.schema import MOST_POINTS
 
 _KINDS = 'a function of time, Moves, arrays (times, positions), or a CSV file with the columns time and position'
@@ -93,17 +93,7 @@ def _interpolated(times: Numbers, positions: Numbers, wanted: Numbers) -> Number
 
 
 def _table(path: Path) -> CsvTable:
-    heading = heading_of(path)
-
-    def column(names: tuple[str, ...], units: Any) -> Wanted:
-        found = next((cell for cell in heading if cell.split('[')[0].split('(')[0].strip() in names), names[0])
-        unit = named_unit(found, units)
-        if unit is None and any(bracket in found for bracket in '[('):
-            raise InputError('setpoint', found, f'a heading with one of the units {", ".join(units)}',
-                             'correct the unit, or leave it out for SI')
-        return wanted_column('setpoint', found, 'setpoint', unit, units)
-
-    return CsvTable('setpoint', path, [column(*name) for name in _NAMES], MOST_POINTS)
+    return CsvTable('setpoint', path, [column_of(path, *names, 'setpoint') for names in _NAMES], MOST_POINTS)
 
 
 def as_setpoints(columns: Numbers | None, count: int) -> list[Setpoint | None]:

@@ -79,13 +79,17 @@ class OwnController:
                 self._refuse(field, value, f'a number within ±{limit:g} {unit} (command.max_{field})', step, time)
         return Command(*(None if value is None else float(value) for value in given))
 
-    def failed(self, error: Exception, step: int, time: float) -> NoReturn:
+    def failed(self, error: Exception, step: int, time: float, lacks_setpoint: bool = False) -> NoReturn:
         """Raise the ControllerError about an error that it raised."""
-        raise ControllerError(f'{self.name} raised {raised(error)}, asked after step {step} (t = {time:g} s); '
-                              'correct the controller') from None
+        fix = 'correct the controller'
+        if lacks_setpoint and 'NoneType' in str(error):
+            fix = 'without setpoint= or --setpoint measured.setpoint is None: give it'
+        raise ControllerError(f'{self.name} raised {raised(error)}, asked after step {step} (t = {time:g} s); {fix}'
+                              ) from None
 
-    def _refuse(self, field: str, value: object, allowed: str, step: int, time: float) -> NoReturn:
-        fix = ('limit it in the controller' if isinstance(value, Real) and math.isfinite(value)
+    def _refuse(self, field: str, value: Any, allowed: str, step: int, time: float) -> NoReturn:
+        is_number = isinstance(value, Real) and not isinstance(value, bool)
+        fix = ('limit it in the controller' if is_number and math.isfinite(value)
                else 'return the velocity of the drive, or a Command(velocity, force)')
         refused = InputError(f'{field} of {self.name} after step {step} (t = {time:g} s)', value, allowed, fix)
         raise ControllerError(str(refused))
@@ -136,9 +140,13 @@ def made_controller(found: Callable[..., Any], given: Mapping[str, object]) -> A
     name = getattr(found, '__name__', type(found).__name__)
     made = f'{name}({", ".join(f"{key}={value!r}" for key, value in given.items())})'
     try:
-        inspect.signature(found).bind(**given)
+        bound = inspect.signature(found).bind(**given)
     except TypeError as error:
         raise InputError('controller', made, f'{name}{inspect.signature(found)}', str(error)) from None
+    for key, one in bound.signature.parameters.items():
+        if isinstance(given.get(key), str) and not (isinstance(one.default, str) or 'str' in str(one.annotation)):
+            raise InputError(f'gain {key}', given[key], f'a number: {name} has no text there ({one})',
+                             f'correct it, or annotate the argument as {key}: str')
     try:
         return found(**given)
     except Exception as error:

@@ -188,4 +188,4 @@ def arc_glitch(angle: Numbers, deviation: Numbers, crossed: float) -> float:
     begin, end = np.interp([crossed, crossed + GLITCH_ARC], angle, deviation)
     arc = deviation[first:last]
     out, inside = arc.max(initial=begin) - max(begin, end), min(begin, end) - arc.min(initial=begin)
-    return float(max(out, 0.0) if out >= inside else -max(inside, 0.0))
+    return float(max(out, 0.0) if out >= inside else -max(inside, 0.0)) + 0.0    # no -0.0

@@ -112,6 +112,20 @@ def wanted_column(name_option: str, name: str, unit_option: str, unit: str | Non
     return Wanted(name_option, name, unit_option, word, units, factor)
 
 
+def column_of(path: Path, names: Sequence[str], units: Mapping[str, Fraction], option: str, unit: str | None = None,
+              unit_option: str = '') -> Wanted:
+    """Return the column of a file that has the first of some names; its unit (None) is that in its heading, or SI.
+
+    Raises InputError where the heading has another one.
+    """
+    found = next((cell for cell in heading_of(path) if cell.split('[')[0].split('(')[0].strip() in names), names[0])
+    unit = unit or named_unit(found, units)
+    if unit is None and any(bracket in found for bracket in '[('):
+        raise InputError(option, found, f'a heading with one of the units {", ".join(units)}',
+                         'correct the unit, or leave it out for SI')
+    return wanted_column(option, found, unit_option or option, unit, units)
+
+
 class CsvTable:
     """The chosen columns of a file in SI; raises InputError that names the line.
 

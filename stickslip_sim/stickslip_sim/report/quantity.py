@@ -11,7 +11,7 @@ _PREFIXES = ((1e3, 'k'), (1.0, ''), (1e-3, 'm'), (1e-6, 'µ'), (1e-9, 'n'))
 def quantity(value: float, unit: str, digits: int = 5) -> str:
     """Return a number, and its unit with the prefix that suits it: 659.07 ms."""
     if not unit or value == 0.0 or not math.isfinite(value):
-        return f'{value:.{digits}g} {unit}'.rstrip()
+        return f'{value + 0.0:.{digits}g} {unit}'.rstrip()    # 0.0, not -0.0
     if unit == 'kg' and abs(value) < 1.0:    # it has a prefix already
         return quantity(1e3 * value, 'g', digits)
     scale, prefix = next(((s, p) for s, p in _PREFIXES if abs(value) >= s), _PREFIXES[-1])

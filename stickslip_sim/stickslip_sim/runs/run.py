@@ -19,6 +19,7 @@ from ..scene import Scene
 from ..simulation.step_result import Mark
 
 COLUMNS = ('time', *Sample._fields[2:])   # of the samples of every run
+STANDS = 1e-12   # m, from one sample to the next: less is rounding of a command or setpoint that stands
 
 
 class Run(Protocol):

@@ -13,7 +13,7 @@ from ..core import ranges
 from ..core.input_profile import FREQUENCIES, MAX_SINUSOIDS
 from ..core.ranges import Range
 from ..friction.shapes import MAX_EXPONENT, MIN_EXPONENT
-from ..simulation.faults import MAX_TIME
+from ..simulation.faults import MAX_TIME, RULES
 from .parameter import Parameter, When, choice, number, numbers, texts
 from .ros_yaml import MOST_NUMBERS
 
@@ -327,7 +327,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     JOINT_PREFIX,
 
     texts('faults.ids', 'ids of faults from the start on, as with ~/inject_fault (docs/hil.md)'),
-    texts('faults.kinds', 'kinds of these faults, like friction_scale or force_pulse'),
+    texts('faults.kinds', f'kinds of these faults (docs/hil.md#faults): {", ".join(RULES)}'),
     numbers('faults.starts', None, 's', 'starts of these faults', within=Range(0.0, MAX_TIME), required=False),
     numbers('faults.durations', None, 's', 'durations of these faults',
             within=Range(ranges.TIME_CONSTANT.low, MAX_TIME),
