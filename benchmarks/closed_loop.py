@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import stickslip_sim as stickslip
+from stickslip_sim.closed_loop import ClosedLoopRun
 from stickslip_sim.controllers import Controller, Following, MoveProgress, Moves, Setpoint
 from stickslip_sim.controllers.own_controller import Measurement
 from stickslip_sim.core.time_grid import NANOSECONDS
@@ -53,8 +54,8 @@ class Follower:
         return answer.command.velocity
 
 
-def close_loop(controller: Controller, moves: Moves, duration: float, delay: int = 0,
-               changes: Mapping[str, object] | None = None) -> Run:
+def loop_run(follower: Follower, moves: Moves, duration: float, delay: int = 0,
+             changes: Mapping[str, object] | None = None) -> ClosedLoopRun:
     """Let a controller drive the axis of `positioning` from prolonged rest for `duration` s.
 
     Its commands hold `delay` steps later than from the next step on; `changes` are to parameters of the scene.
@@ -62,8 +63,14 @@ def close_loop(controller: Controller, moves: Moves, duration: float, delay: int
     late = {'faults.ids': ['late'], 'faults.kinds': ['command_delay'], 'faults.starts': [0.0],
             'faults.durations': [math.inf], 'faults.values': [delay / RATE]} if delay else {}
     scene = stickslip.load_scene('positioning', {**_AT_REST, **late, **(changes or {})})
+    return stickslip.close_loop(follower, scene, round(duration * RATE) / RATE, setpoint=moves)
+
+
+def close_loop(controller: Controller, moves: Moves, duration: float, delay: int = 0,
+               changes: Mapping[str, object] | None = None) -> Run:
+    """Return what a controller did in `loop_run`."""
     follower, count = Follower(controller, moves), round(duration * RATE)
-    run = stickslip.close_loop(follower, scene, count / RATE)    # its last state is not answered
+    run = loop_run(follower, moves, duration, delay, changes)    # its last state is not answered
     events = [event for event in run.events if event.time <= run.samples['time'][count - 1]]
     return Run(moves, follower.setpoints, [*run.sample_rows()][:count], run.commands['velocity'].tolist(), events)
 

@@ -14,8 +14,7 @@ import stickslip_sim as stickslip
 from stickslip_sim.controllers import BranchCompensation, Cascade, Controller, Moves
 from stickslip_sim.inputs import load_scene
 
-from .closed_loop import Figures, Follower, close_loop, figures
-from .controllers_picture import draw
+from .closed_loop import Figures, Follower, close_loop, figures, loop_run
 from .page import replace_generated
 
 PAGE = pathlib.Path('docs/controllers.md')
@@ -113,8 +112,8 @@ def main() -> None:
     """Replace the generated part of the page, and the picture."""
     text = '\n\n'.join(f'### {heading}\n\n' + '\n'.join(table()) for heading, table in SECTIONS.items())
     replace_generated(PAGE, f'{text}\n')
-    draw({name: close_loop(each, SLOW_FEED, SLOW_FEED.period) for name, each in controllers().items()},
-         AXIS, PICTURE)
+    stickslip.plot_runs({name: loop_run(Follower(each, SLOW_FEED), SLOW_FEED, SLOW_FEED.period)
+                         for name, each in controllers().items()}, PICTURE, columns=True)
     print(f'written: {PICTURE}')
 
 

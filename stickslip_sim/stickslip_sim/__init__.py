@@ -16,6 +16,7 @@ from .core.version import __version__
 TYPE_CHECKING = False   # what type checkers take for true; `typing` itself is not imported before it is needed
 
 if TYPE_CHECKING:
+    from .check.report import plot_runs
     from .closed_loop import close_loop, close_loops, tune
     from .controllers.own_controller import Command
     from .core.errors import (
@@ -46,12 +47,13 @@ __all__ = [
     'Command', 'ControllerError', 'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError',
     'RecordingWarning', 'Run', 'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError', 'StickslipError',
     'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'close_loops', 'critical',
-    'error_estimate', 'identify', 'load_scene', 'read_run', 'run_batch', 'scene_names', 'sensitivities', 'simulate',
-    'simulate_events', 'sweep', 'tune', 'uncertainty',
+    'error_estimate', 'identify', 'load_scene', 'plot_runs', 'read_run', 'run_batch', 'scene_names', 'sensitivities',
+    'simulate', 'simulate_events', 'sweep', 'tune', 'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
     _MODULES = {
+        '.check.report': ('plot_runs',),
         '.closed_loop': ('close_loop', 'close_loops', 'tune'),
         '.controllers.own_controller': ('Command',),
         '.core.errors': ('ControllerError', 'InputError', 'RecordingError', 'RecordingWarning', 'SolverError',

@@ -29,6 +29,9 @@ class Own:
 def still(t, measured):
     return 0.0
 
+def agrees(t, measured):
+    return True
+
 def fails(t, measured):
     return 0.01 / (0.05 - t)
 
@@ -69,10 +72,19 @@ def test_a_run_with_all_that_it_can_write(folder: Path, capsys: Capture) -> None
     assert recorded.scene.values['encoder.resolution'] == 1e-6
     found = json.loads((folder / 'mine.json').read_text())
     assert found['passed'] is True
-    assert found['receipt']['controller'] == {'name': 'Own', 'rate': 500.0}
+    assert found['receipt']['controller'] == {
+        'name': 'Own', 'rate': 500.0, 'command': 'stickslip close-loop own.py:Own --scene positioning --duration 0.2 '
+        '--rate 500.0 --setpoint move.csv --gain kp=8 --gain name=mine --set encoder.resolution=1e-6'}
     assert ElementTree.parse(folder / 'mine.xml').getroot().get('failures') == '0'
     assert answered(capsys, 'check', 'runs/mine', '--limits', 'limits.yaml')[0] == 0
     assert answered(capsys, 'verify', 'runs/mine')[1].startswith('identical, 201 steps')
+    code, said, _ = answered(capsys, 'verify', 'runs/mine', '--set', 'axis.mass=300', '--set', 'friction.scale=1.2')
+    *_, largest, rms, note = said.splitlines()
+    error = recorded.setpoint['position'] - recorded.samples['position']
+    assert (largest.split()[0], rms.split()[0]) == ('following_error', 'following_error_rms')
+    assert f'{1e6 * abs(error).max():.5g} µm' in largest
+    assert note.startswith('note: the commands are those of the recording; a controller that sees the other axis ')
+    assert note.endswith(f": {found['receipt']['controller']['command']} --set axis.mass=300 --set friction.scale=1.2")
 
 
 def test_a_limit_that_is_not_kept(folder: Path, capsys: Capture) -> None:
@@ -93,7 +105,7 @@ def test_to_standard_output(capsys: Capture) -> None:
 @pytest.mark.parametrize(('arguments', 'said'), [
     (['own.py:Owns'], "controller = 'own.py:Owns' is refused: must be a class, function or callable object of own.py; "
                      'did you mean Own?'),
-    (['own.py:number'], 'there are: Own, still, fails, Needs, ready'),
+    (['own.py:number'], 'there are: Own, still, agrees, fails, Needs, ready'),
     (['own.py'], 'must be FILE.py:NAME'),
     (['ownn.py:Own'], 'did you mean own.py?'),
     (['own.py:Own', '--gain', 'kq=3'], "'Own(kq=3)' is refused: must be Own(kp: float = 5.0, name: str = '') -> None"),
@@ -101,6 +113,14 @@ def test_to_standard_output(capsys: Capture) -> None:
     (['own.py:still', '--gain', 'kp=3'], 'kp = 3 is refused: must be left out: still is no class'),
     (['own.py:Needs', '--gain', 'kp=3'], 'ValueError: kp is too large (own.py, line '),
     (['own.py:Own'], "Own raised AttributeError: 'NoneType' object has no attribute 'velocity' (own.py, line "),
+    (['own.py:Own'], 'without setpoint= or --setpoint measured.setpoint is None: give it'),
+    (['own.py:Own', '--gain', 'kp=fast'], "gain kp = 'fast' is refused: must be a number"),
+    (['own.py:agrees'], 'velocity of agrees after step 0 (t = 0 s) = True is refused: must be a number within ±1 m/s '
+                        '(command.max_velocity); return the velocity of the drive'),
+    (['own.py:still', '--duration', '0.0015'], 'duration = 0.0015 is refused: must be 0.001 to 10000 s, a whole number '
+                                              'of steps of 0.001 s; for example 0.002'),
+    (['own.py:still', '--duration', '1e9'], 'must be 0.001 to 10000 s'),
+    (['own.py:still', '--duration', '-1'], 'must be 0.001 to 10000 s'),
     (['own.py:fails'], 'velocity of fails after step 41 (t = 0.041 s) = 1.11'),
     (['own.py:fails', '--set', 'command.max_velocity=1e6'], 'fails raised ZeroDivisionError: '),
     (['own.py:still', '--rate', '300'], 'rate = 300.0 is refused'),

@@ -3,16 +3,23 @@
 """`stickslip plot`: the picture of any run, in the format that its name says, or one line with what is wrong."""
 
 import csv
+import json
+import re
+from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from stickslip_sim import close_loop, plot_runs
+from stickslip_sim.controllers.own_controller import Measurement
+from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.run import TimeWindow
 from stickslip_sim.recording import read_run
-from stickslip_sim.runs import SimulatedRun, simulate, simulate_events
+from stickslip_sim.runs import Run, SimulatedRun, simulate, simulate_events
 from stickslip_sim.runs.picture import sampled, windows_of
 from tests.support.check_files import cut
 from tests.support.tool import Capture, answered, refused
@@ -115,6 +122,105 @@ class TestRefusals:
     def test_what_is_for_scenes_only(self, fig8_bag: Path, capsys: Capture) -> None:
         assert '--duration and --set are for a scene' in refused(capsys, 'plot', fig8_bag, '--duration', '1')
         assert '--duration S is needed' in refused(capsys, 'plot', 'paper_fig8')
+
+
+# Several runs, over each other or in columns.
+
+NAMES = 'sweep_1.0', 'sweep_1.2'
+SIDE_LIMITS = """limits:
+  following_error: {max: 6.0e-4}
+  at rest: {check: following_error, max: 1.0e-3, window: {begin: 0.9}}
+  peak_speed: {max: 9.0}
+"""
+
+
+def proportional(gain: float, _: float, measured: Measurement) -> float:
+    assert measured.setpoint is not None
+    return gain * (measured.setpoint.position - measured.slider_position)
+
+
+class Sides:
+    """Two runs of one controller in a working directory: 0.5 mm in 0.2 to 0.6 s, 1 s in all."""
+
+    def __init__(self, folder: Path) -> None:
+        still = {'drive.course': 'constant', 'drive.velocity': 0.0}
+        for name, gain in zip(NAMES, (30.0, 6.0)):
+            run = close_loop(partial(proportional, gain), load_scene('positioning', still), 1.0,
+                             setpoint=([0.0, 0.2, 0.6, 1.0], [0.0, 0.0, 5e-4, 5e-4]))
+            run.save(folder / name)
+        (folder / 'limits.yaml').write_text(SIDE_LIMITS)
+        self.runs = {name: read_run(folder / name) for name in NAMES}
+
+    def largest_error(self, name: str, begin: float, end: float) -> float:
+        run = self.runs[name]
+        time = run.samples['time']
+        error = np.abs(run.setpoint['position'] - run.samples['position'])
+        return float(error[(time >= begin) & (time <= end)].max())
+
+
+@pytest.fixture(scope='module')
+def sides(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Sides]:
+    folder = tmp_path_factory.mktemp('sides')
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        yield Sides(folder)
+
+
+def words_in(path: Path) -> set[str]:
+    return set(re.findall('<!-- (.*?) -->', path.read_text()))
+
+
+def test_several_runs_over_each_other_by_their_whole_names(sides: Sides, tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / 'both.svg'
+    assert answered(capsys, 'plot', *NAMES, '--limits', 'limits.yaml', '--out', out) == (0, f'written: {out}\n', '')
+    words = words_in(out)
+    assert {*NAMES, 'setpoint', 'limit following_error', 'setpoint less slider / µm'} <= words
+    assert 'limit peak_speed, beyond the panel' in words
+    assert 'limit at rest' not in words          # the move is shown, with a tenth of it on either side
+    assert answered(capsys, 'plot', *NAMES, '--limits', 'limits.yaml', '--window', '0:1', '--out', out)[0] == 0
+    assert 'limit at rest' in words_in(out)
+    assert sides.runs[NAMES[0]].end == 1.0
+
+
+def test_the_window_is_that_of_the_move(sides: Sides, tmp_path: Path) -> None:
+    assert plot_runs(sides.runs, tmp_path / 'a.png') == pytest.approx((0.161, 0.64), abs=0.002)
+    assert plot_runs(sides.runs, tmp_path / 'a.png', window=(0.1, 0.3), columns=True) == (0.1, 0.3)
+    scenes: dict[str, Run] = {'a': simulate(load_scene('paper_fig8'), 2.0), **sides.runs}
+    assert plot_runs(scenes, tmp_path / 'a.png') == (0.0, 2.0)    # one has no setpoint: the error is that to the drive
+    with pytest.raises(InputError, match='1 to 8 at once'):
+        plot_runs({str(k): sides.runs[NAMES[0]] for k in range(9)}, tmp_path / 'a.png')
+
+
+def test_controllers_in_columns_with_their_figures(sides: Sides, tmp_path: Path, capsys: Capture) -> None:
+    out = tmp_path / 'out'
+    code, said, err = answered(capsys, 'compare', '--controllers', *NAMES, '--limits', 'limits.yaml', '--out', out)
+    worst = {name: sides.largest_error(name, 0.0, 1.0) for name in NAMES}
+    failing = [name for name in NAMES if worst[name] > 6e-4]
+    assert code == (3 if failing else 0)
+    assert failing == [NAMES[0]]
+    assert err.startswith(f'stickslip: {NAMES[0]} does not keep limits.yaml: following_error')
+    report = json.loads((out / 'report.json').read_text())
+    begin, end = report['window']
+    for name in NAMES:
+        assert report['figures'][name]['following_error'] == pytest.approx(sides.largest_error(name, begin, end))
+        assert name in said
+    assert {*NAMES, 'stick', 'setpoint', 'limit following_error'} <= words_in(out / 'controllers.svg')
+    assert 'data:image/svg+xml' in (out / 'report.html').read_text()
+
+
+@pytest.mark.usefixtures('sides')
+@pytest.mark.parametrize(('arguments', 'said'), [
+    (['plot', *NAMES, NAMES[0]], 'RUN_OR_SCENE: give each once'),
+    (['plot', *NAMES, '--window', '0:3'], 'must be A:B with 0 <= A < B <= 1 s'),
+    (['plot', *NAMES, '--limits', 'none.yaml'], "limits file = 'none.yaml' is refused"),
+    (['compare', *NAMES, '--limits', 'limits.yaml', '--out', 'o'], '--limits and --window are for --controllers'),
+    (['compare', '--controllers', 'paper_fig8', '--out', 'o'], 'this is a scene: record it'),
+    (['compare', '--controllers', *NAMES, NAMES[0], '--out', 'o'], 'give each once'),
+    (['compare', '--controllers', *NAMES, '--window', '0.5:7', '--out', 'o'], 'must be A:B with 0 <= A < B <= 1 s'),
+])
+def test_several_refused(arguments: list[str], said: str, capsys: Capture) -> None:
+    assert said in refused(capsys, *arguments)
+    assert not [path for path in Path().iterdir() if path.name not in (*NAMES, 'limits.yaml')]
 
 
 # A run whose contact yields, through all that takes a run: tables, bag, pictures, verification, comparison.

@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 
 from benchmarks.identification import COMMANDS, EXAMPLES, FAILS, TRUTH
+from benchmarks.loop_pictures import PICTURES as LOOP_PICTURES
+from benchmarks.loop_pictures import blocks, page_commands, write_inputs
 from benchmarks.maps import CRITICAL, PICTURES, UNCERTAIN, picture_of
 from benchmarks.page import part_of, quoted
 from stickslip_sim.inputs import load_scene
@@ -55,7 +57,7 @@ def test_the_blocks_of_python(clone: Path, capsys: Capture) -> None:
 
 def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
     """The class in a file, the run in Python, and the commands one after the other."""
-    controller, loop, tuned, many, lanes = re.findall(r'^```python\n(.*?)^```$', CLOSED_LOOP, re.MULTILINE | re.DOTALL)
+    controller, loop, tuned, many, lanes = blocks('python')
     names: dict[str, Any] = {}
     for block in (controller + loop, tuned, many):
         exec(block, names)
@@ -64,22 +66,20 @@ def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
     assert names['loops'].pass_rate.passed == 64
     for picture in ('run.png', 'tune.png'):
         assert (clone / picture).read_bytes().startswith(b'\x89PNG')
-    (clone / 'my_controller.py').write_text(controller)
-    for name, ending in (('move.csv', 'csv'), ('limits.yaml', 'yaml')):
-        (part,) = re.findall(rf'^```{ending}\n(.*?)^```$', CLOSED_LOOP, re.MULTILINE | re.DOTALL)
-        (clone / name).write_text(part)
-    commands = re.findall(r'^    (stickslip (?:.*\\\n)*.*)$', CLOSED_LOOP, re.MULTILINE)
-    assert len(commands) == 6
-    for command in commands:
-        if command.startswith('stickslip tune'):
+    write_inputs(clone)
+    assert len(page_commands()) == 10
+    for words in page_commands():
+        if words[0] == 'tune':
             continue    # tests/closed_loop/test_tuning.py compares what it says
-        one_line = command.replace('\\\n', ' ').removeprefix('stickslip ')
-        if '--samples' in command:    # some of the axes do not keep the limits
-            code, said, _ = answered(capsys, *shlex.split(one_line.replace('--samples 1000', '--samples 8')))
-            assert (code, 'of 8 pass' in said) == (3, True)
+        code, said, errors = answered(capsys, *['8' if word == '1000' else word for word in words])
+        if '--samples' in words or '--controllers' in words:    # some of the axes, and one gain, do not keep the limits
+            assert (code, '8 of 8 pass' in said) == (3, False)
         else:
-            done(capsys, one_line)
-    assert (clone / 'shell.png').read_bytes().startswith(b'\x89PNG')
+            assert code == 0, f'{words}\n{errors}'
+        if '--controllers' in words:
+            assert quoted(said.rpartition('written')[0]) in CLOSED_LOOP
+    for picture in ('shell.png', *LOOP_PICTURES):
+        assert (clone / picture).read_bytes().startswith(b'\x89PNG')
 
 
 class TestMaps:

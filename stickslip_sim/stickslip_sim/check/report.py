@@ -2,31 +2,37 @@
 # SPDX-License-Identifier: Apache-2.0
 """What checking, verifying and asking what if found: for people, as JSON values and as JUnit XML; SI units."""
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
 
+import numpy as np
+
+from ..core.errors import InputError
+from ..core.paths import check_picture_name
 from ..core.types import EventKind
 from ..figures.catalogue import OF_A_CYCLE, head_of, unit_of
 from ..figures.circular import CircularTest
-from ..figures.cycles import Summary
 from ..recording import MeasuredRun, RecordedRun
 from ..report.model import NOTE, Part, Sentence, Table
 from ..report.quantity import quantity
 from ..report.values import json_text
 from ..runs import Run
-from ..runs.samples import reduced
 from ..scene.load import values_in_file
 from ..scene.values import scene_text
 from .iso_report import IsoTest, iso_parts, iso_values
-from .limits import LimitOutcome, Limits, outcomes_of, positions_of
-from .measures import TIMING_LIMIT
-from .observed_run import commands_of, gaps_in, observed_motion, timing_of
+from .limits import Limit, LimitOutcome, Limits, Window, load_limits, outcomes_of, positions_of
+from .measures import KINDS, TIMING_LIMIT
+from .observed_run import commands_of, first_command_of, gaps_in, observed_motion, timing_of, unmeasured
 from .origin import made_with
 from .verification import Verdict
 
-_DRAWN = 'position', 'velocity', 'friction_force'   # of what if
+if TYPE_CHECKING:
+    from ..runs.picture import RunBeside
+
+_MOST_BESIDE = 8   # runs in a picture
 
 
 class Checked(NamedTuple):
@@ -238,26 +244,73 @@ def verdict_report(run: RecordedRun, verdict: Verdict) -> Iterator[Part]:
         yield f'{extent}, {amount}, up to t = {verdict.end:.9g} s'
 
 
-def beside_table(recorded: Summary, other: Summary) -> Table:
-    """Return two runs beside each other: kind of motion, break-aways, means of the last cycles."""
-    both = recorded, other
+def beside_table(recorded: Run, other: Run) -> Table:
+    """Return two runs beside each other: motion, break-aways, errors to a setpoint, means of the last cycles."""
+    both = recorded.summary, other.summary
     rows = [('motion', *(figures.motion for figures in both)),
             ('time in stick', *(f'{100.0 * figures.stick_share:.4g} %' for figures in both)),
             ('break-aways', *(str(figures.events[EventKind.BREAKAWAY]) for figures in both)),
             ('complete cycles', *(str(figures.cycles) for figures in both))]
     rows += [(head_of(name), *(quantity(getattr(figures.mean, name), unit_of(name)) if figures.mean else '–'
                                for figures in both))
-             for name in OF_A_CYCLE if recorded.mean or other.mean]
+             for name in OF_A_CYCLE if both[0].mean or both[1].mean]
+    if recorded.setpoint:
+        found = [outcomes_of(control_figures(run, (run.begin, run.end)), run) for run in (recorded, other)]
+        rows += [(outcome.name, *(_cells(outcomes[row])[1] for outcomes in found))
+                 for row, outcome in enumerate(found[0]) if outcome.name.startswith('following_error')]
     return Table(('', 'recorded', 'what if'), rows, least=(22, 13, 13))
 
 
 def write_what_if(folder: Path, changes: Mapping[str, object], recorded: RecordedRun, other: Run) -> None:
     """Write picture, figures and scene of what would have been; raises OSError."""
-    from ..plots import plot_beside  # matplotlib takes half a second
-
     changed = ', '.join(f'{name} = {value}' for name, value in changes.items())
-    was, would_be = (reduced(run.sample_blocks(), [(run.begin, run.end)], _DRAWN) for run in (recorded, other))
-    plot_beside(was, would_be, f'{recorded.title}\nwhat if {changed}', folder / 'what_if.png')
+    plot_runs({recorded.title: recorded, f'what if {changed}': other}, folder / 'what_if.png')
     figures = {'scene': other.scene.name, 'changes': changes, 'recorded': recorded.summary, 'what_if': other.summary}
     (folder / 'what_if.json').write_text(json_text(figures, 2), encoding='utf-8')
     (folder / 'scene.yaml').write_text(scene_text(values_in_file(other.scene)), encoding='utf-8')
+
+
+# Runs beside each other.
+
+_AT_EACH_INSTANT = {'following_error': 'error', 'peak_speed': 'speed', 'lowest_speed': 'speed'}
+_OF_CONTROL = ('following_error', 'following_error_rms', 'sticks', 'longest_stick', 'peak_speed', 'command_peak',
+               'command_rms')
+
+
+def plot_runs(runs: Mapping[str, Run], *paths: Path | str, limits: Limits | str | None = None,
+              window: tuple[float, float] | None = None, columns: bool = False) -> tuple[float, float]:
+    """Draw speed, error and drive force of runs by their names over each other, or in `columns`, into each path.
+
+    The error is that to the reference of `limits` (a file, or its content) or to the setpoint; without any, to the
+    drive.  Limits that hold at each instant are drawn as lines.  Without a `window` (begin and end, s) that of the
+    moves is shown; returns it.  Raises InputError.
+    """
+    for path in paths:
+        check_picture_name('path', str(path))
+    if not 1 <= len(runs) <= _MOST_BESIDE:
+        raise InputError('runs', f'{len(runs)} runs', f'1 to {_MOST_BESIDE} at once', 'draw fewer')
+    from ..runs.picture import draw_runs  # matplotlib takes half a second
+
+    limits = load_limits(limits) if isinstance(limits, str) else limits or Limits(())
+    return draw_runs({name: _beside(run, limits) for name, run in runs.items()}, window, columns, *paths)
+
+
+def _beside(run: Run, limits: Limits) -> 'RunBeside':
+    from ..plots.overlay import Bound
+    from ..runs.picture import RunBeside
+
+    spans = [(limit, limit.window.at(first_command_of(run))) for limit in limits.limits]
+    bounds = [Bound(limit.name, _AT_EACH_INSTANT[limit.kind.name], limit.bound, span.begin or run.begin,
+                    run.end if span.end is None else span.end)
+              for limit, span in spans if span is not None and limit.kind.name in _AT_EACH_INSTANT]
+    given = limits.reference and limits.reference_for(run)
+    wanted = {'time': np.array(given.times), 'position': np.array(given.positions)} if given else run.setpoint
+    return RunBeside(run, wanted, bounds)
+
+
+def control_figures(run: Run, window: tuple[float, float], limits: Limits | None = None) -> Limits:
+    """Return the figures of control of a run in a window (s) as limits that it keeps, with the reference of limits."""
+    part = Window(max(window[0], run.begin), min(window[1], run.end))
+    kinds = [KINDS[name] for name in _OF_CONTROL if not unmeasured(run, KINDS[name].needs)]
+    return Limits(tuple(Limit(kind.name, kind, math.inf, part, {}) for kind in kinds), needs_commands=False,
+                  reference=limits.reference_for(run) if limits else None)

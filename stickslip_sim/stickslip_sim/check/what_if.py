@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """A recorded run beside what would have been with other parameters, under the same orders."""
 
+import shlex
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
 from ..core.arrays import Columns
-from ..core.errors import InputError
+from ..core.errors import InputError, one_line
 from ..core.types import Event, Mode, Progress, Sample
 from ..figures.cycles import summary
 from ..recording import RecordedRun
@@ -16,6 +18,7 @@ from ..runs.samples import GATHERED, MOST_HELD, HeldSamples, RemadeSamples, Samp
 from ..runs.simulated import columns_of_rows
 from ..scene import Scene, changed
 from ..scene.schema import BY_NAME
+from .observed_run import first_command_of
 from .origin import begins_in_mid_run, offline_of
 from .remake import Maker, maker_of, steps_of
 
@@ -31,6 +34,19 @@ def other_scene(run: RecordedRun, changes: Mapping[str, object]) -> Scene:
             raise InputError(name, value, 'a parameter that can change while the axis runs',
                              'this recording begins in mid-run; take one from the start')
     return changed(run.scene, changes)
+
+
+def feedback_note(run: RecordedRun, changes: Mapping[str, object]) -> str:
+    """Return that a controller would have given other commands, and how to ask it; empty for a run without commands."""
+    if first_command_of(run) is None:
+        return ''
+    known = run.receipt.get('controller')
+    controller: Mapping[str, Any] = known if isinstance(known, dict) else {}
+    command = str(controller.get('command') or f'stickslip close-loop FILE.py:{controller.get("name", "NAME")} --scene '
+                  f'{run.scene.name} --duration {run.duration:g}')
+    changed = shlex.join(word for name, value in changes.items() for word in ('--set', f'{name}={value}'))
+    return one_line('the commands are those of the recording; a controller that sees the other axis answers otherwise: '
+                    f'{command} {changed}')
 
 
 def other_run(run: RecordedRun, scene: Scene, changes: Mapping[str, object], progress: Progress = None) -> SimulatedRun:
@@ -54,7 +70,7 @@ def other_run(run: RecordedRun, scene: Scene, changes: Mapping[str, object], pro
     figures = summary([event for event in events if begin <= event.time <= end], end - begin, start, begin)
     samples: Samples = (HeldSamples(joined(held)) if count <= MOST_HELD
                         else RemadeSamples(lambda: (block for block, _ in made()), count))
-    return SimulatedRun(scene, end, None, events, samples, figures, begin=begin)
+    return SimulatedRun(scene, end, None, events, samples, figures, begin=begin, setpoint=run.setpoint)
 
 
 def _blocks(run: RecordedRun, maker: Maker) -> Iterator[tuple[Columns, list[Event]]]:

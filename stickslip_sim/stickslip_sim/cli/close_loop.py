@@ -73,6 +73,11 @@ def close_loop(controller: str, scene: str, changes: SceneChanges, duration: flo
     own = load_controller(controller, dict(map(parse_gain, gains)))
     with progress_bar('simulating') as progress:
         run = closed_loop(own, changes.load(scene), duration, rate, setpoint, progress)
+    options: dict[str, Any] = {'scene': [scene], 'duration': [duration], 'rate': [rate], 'setpoint': [setpoint],
+                               'gain': gains, 'set': changes.overrides, 'meant': changes.meant}
+    run.receipt['controller']['command'] = shlex.join(['stickslip', 'close-loop', controller, *(
+        word for name, values in options.items() for value in values if value is not None
+        for word in (f'--{name}', str(value)))])
     checked = None if loaded is None else run.check(loaded)
     if out is not None:
         check_new_folder('--out', out)    # nobody has made it meanwhile

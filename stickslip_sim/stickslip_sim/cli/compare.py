@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip compare`: the paper's figures and statements, from recorded runs or from scenes."""
+"""`stickslip compare`: the paper's figures and statements, of runs or scenes; or the runs of controllers."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,17 +21,29 @@ _MOST = 8        # runs, rows of a picture
 @verb(short_help="Draw the paper's figures for a run, and check its statements.")
 @click.argument('runs', nargs=-1, required=True, metavar='RUN_OR_SCENE...', shell_complete=completion.complete_scenes)
 @click.option('--out', type=FOLDER, required=True, metavar='FOLDER', help='New folder for the report and the pictures.')
+@click.option('--controllers', is_flag=True, help='Set recorded runs of controllers side by side instead.')
+@click.option('--limits', metavar='FILE.yaml', help='With --controllers: check them, too (docs/check.md).')
+@click.option('--window', metavar='A:B', help='With --controllers: this part, s [default: where the setpoint moves].')
 @click.option('--duration', type=float, metavar='S',
               help='Simulated time of a scene, s [default: 10 s, or more for 20 cycles].')
 @scene_changes('Change a parameter of every scene.')
-def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: SceneChanges) -> None:
+def compare(runs: tuple[str, ...], out: str, controllers: bool, limits: str | None, window: str | None,
+            duration: float | None, changes: SceneChanges) -> None:
     """Draw runs as the paper's figures 4, 6, 7 and 8, and say which statements of the paper hold on each.
 
     A run is the folder of a recorded one, or a scene, which is simulated.  Exit with 3 when a statement that applies
     to a run does not hold.  With a measured run (see import) the others are drawn over it, and differences of their
     cycles listed; a scene then starts where that run does, and what was measured of its drive and force moves it.
+
+    With --controllers: speed, error and drive force of each run in a column, and its figures of control.  Exit with 3
+    when one of --limits is not kept.
     """
     _check(runs, duration, changes)
+    if controllers:
+        _side_by_side(runs, limits, window, out)
+        return
+    if limits or window:
+        raise click.UsageError('--limits and --window are for --controllers.')
     from ..compare.report import write_comparison
     from ..core.errors import VerdictError
     from .progress import progress_bar
@@ -44,6 +56,24 @@ def compare(runs: tuple[str, ...], out: str, duration: float | None, changes: Sc
     say_written(str(Path(out) / 'report.html'))
     if failed:
         raise VerdictError(f'{len(failed)} of the statements that apply do not hold ({"; ".join(failed)})')
+
+
+def _side_by_side(sources: tuple[str, ...], limits: str | None, window: str | None, out: str) -> None:
+    from ..compare.controllers import write_controllers
+    from ..core.errors import VerdictError
+    from ..runs.report import Window
+    from .progress import progress_bar
+
+    if len(set(sources)) < len(sources):
+        raise click.UsageError('RUN_OR_SCENE: give each once.')
+    runs = {source: recorded_run(source) for source in sources}
+    shown = None if window is None else Window.of(window).in_run(runs[sources[0]])
+    with progress_bar('comparing'), new_folder('--out', out) as folder:
+        report, failed = write_controllers(runs, limits, shown, folder)
+    show(report)
+    say_written(str(Path(out) / 'report.html'))
+    if failed:
+        raise VerdictError(failed)
 
 
 def _check(runs: tuple[str, ...], duration: float | None, changes: SceneChanges) -> None:

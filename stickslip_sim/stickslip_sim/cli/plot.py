@@ -14,36 +14,49 @@ if TYPE_CHECKING:
     from ..runs import Run
 
 
-@verb(short_help='Draw any run: motion, stretch, forces, modes, faults.')
-@click.argument('source', metavar='RUN_OR_SCENE', shell_complete=completion.complete_scenes)
-@click.option('--window', metavar='A:B', help='Show this part beside the whole, s; A may be first_command, '
+@verb(short_help='Draw any run: motion, stretch, forces, modes, faults; or several over each other.')
+@click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...',
+                shell_complete=completion.complete_scenes)
+@click.option('--window', metavar='A:B', help='Show this part, of one run beside the whole, s; A may be first_command, '
                                               '+B counts from A [default: what was commanded, last cycles of a long '
-                                              'run].')
+                                              'run; of several where the setpoint moves].')
+@click.option('--limits', metavar='FILE.yaml', help='Draw limits, too, and the error to their reference.')
 @click.option('--out', type=PICTURE, metavar='FILE.png|pdf|svg', help='Write the picture there; the ending decides the '
-                                                                  'format [default: NAME.png].')
+                                                                  'format [default: NAME.png, of several runs.png].')
 @click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
 @scene_changes('Change a parameter of a scene.')
-def plot(source: str, window: str | None, out: str | None, duration: float | None, changes: SceneChanges) -> None:
+def plot(sources: tuple[str, ...], window: str | None, limits: str | None, out: str | None, duration: float | None,
+         changes: SceneChanges) -> None:
     """Draw RUN_OR_SCENE - a run folder, or a scene to simulate - over time.
 
     Positions of slider and drive, stretch of the spring between them, velocity and command, forces, modes; faults and
     commands that were refused or limited; of a node's run late steps, and gaps between commands.
+
+    Of several, or with --limits, speed, error and drive force, one over the other.
     """
+    if len(set(sources)) < len(sources):
+        raise click.UsageError('RUN_OR_SCENE: give each once.')
     from ..runs.report import Window, file_stem
     from .progress import progress_bar
 
     asked = None if window is None else Window.of(window)
-    run = _run(source, duration, changes)
-    shown = None if asked is None else asked.in_run(run)
-    out = f'{file_stem(run)}.png' if out is None else out
+    check_sources(sources, duration, changes)
+    runs = {source: _run(source, duration, changes) for source in sources}
+    first = runs[sources[0]]
+    shown = None if asked is None else asked.in_run(first)
+    out = ('runs.png' if len(runs) > 1 else f'{file_stem(first)}.png') if out is None else out
     check_picture('--out', out)
     with progress_bar('drawing'), whole(out) as temporary:
-        run.plot(temporary, shown)
+        if len(runs) > 1 or limits is not None:
+            from ..check.report import plot_runs  # half a second more
+
+            plot_runs(runs, temporary, limits=limits, window=shown)
+        else:
+            first.plot(temporary, shown)
     say_written(out)
 
 
 def _run(source: str, duration: float | None, changes: SceneChanges) -> 'Run':
-    check_sources([source], duration, changes)
     if not is_recorded(source) and duration is not None:    # a scene has one
         return simulated(source, duration, changes)
     run = recorded_run(source)

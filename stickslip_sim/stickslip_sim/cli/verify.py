@@ -25,7 +25,7 @@ def verify(run: str, changes: SceneChanges, out: str | None) -> None:
     from ..check import verification
     from ..check.origin import doubts_about
     from ..check.report import beside_table, verdict_report, write_what_if
-    from ..check.what_if import other_run, other_scene
+    from ..check.what_if import feedback_note, other_run, other_scene
     from ..core.errors import VerdictError
     from ..report.model import NOTE, Sentence
     from .progress import progress_bar
@@ -39,10 +39,11 @@ def verify(run: str, changes: SceneChanges, out: str | None) -> None:
         verdict = verification.verify(recorded, progress)
     show([*doubts, *verdict_report(recorded, verdict)], flush=True)
     if given:
-        before = recorded.summary   # what cannot be read is refused before the work begins
+        _ = recorded.summary   # what cannot be read is refused before the work begins
         with progress_bar('what if') as progress:
             other = other_run(recorded, scene, given, progress)
-        show([beside_table(before, other.summary)], flush=True)
+        note = feedback_note(recorded, given)
+        show([beside_table(recorded, other), *([Sentence(note, NOTE)] if note else [])], flush=True)
         if out is not None:
             with new_folder('--out', out) as folder:
                 write_what_if(folder, given, recorded, other)

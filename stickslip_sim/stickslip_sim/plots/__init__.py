@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Pictures.  The only room that imports matplotlib; what is drawn of a result is decided in its own room."""
 
-from .overlay import plot_beside
 from .run import plot_run
 from .trade import SolverCurve, plot_trade
 
-__all__ = ['SolverCurve', 'plot_beside', 'plot_run', 'plot_trade']
+__all__ = ['SolverCurve', 'plot_run', 'plot_trade']

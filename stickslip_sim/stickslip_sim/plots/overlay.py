@@ -1,10 +1,11 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs over a measured one, from a break-away on: forces, velocity, travel over time, force over velocity."""
+"""Runs over each other: over a measured one, from a break-away on; and any runs, over each other or side by side."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from textwrap import fill
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -13,7 +14,9 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
+from ..core.types import Mode
 from .paper_panels import legend_below, part
+from .run import DrawnRun, TimeWindow
 from .style import (
     BLACK,
     BLUE,
@@ -24,11 +27,13 @@ from .style import (
     ORANGE,
     PURPLE,
     RED,
+    SKY,
     dress,
     force_unit,
-    head,
+    legend_of,
     letter,
     line,
+    lines_by_label,
     save,
     shortened,
     thinned,
@@ -107,23 +112,92 @@ def _draw(panels: list[Axes], label: str, columns: Mapping[str, Numbers], known:
                        alpha=alpha)
 
 
-# A recorded run and its what-if run, one over the other.
+# Runs over each other or beside each other: speed, error of the position, force of the drive.
 
-def plot_beside(recorded: Mapping[str, Numbers], other: Mapping[str, Numbers], title: str, path: Path | str) -> None:
-    """Draw position, velocity and friction force of both over time into `path` (.png, .pdf or .svg).
+_MICRO, _FINE = 1e6, 1e-3   # m to µm; m: smaller errors are shown so
+_FAR = 4.0                  # of the largest value: a limit farther away would leave the curves no room
+_TITLES, _LABELS = 100, 130  # letters that titles and labels have room for, side by side
+_DASHED: tuple[Any, ...] = (0, (5, 2))
+_LOOKS = [(colour, style) for style in ('solid', _DASHED) for colour in (BLUE, RED, GREEN, ORANGE, SKY)]
 
-    Columns are named as in `types.Sample`, and `time`; the first line of `title` is the heading.
+
+class Bound(NamedTuple):
+    """A limit by its name, either side of 0 (SI), on what a panel shows from `begin` to `end` (s)."""
+
+    name: str
+    panel: str     # speed or error
+    value: float
+    begin: float
+    end: float
+
+
+def plot_over_each_other(runs: Sequence[DrawnRun], window: TimeWindow, bounds: Sequence[Sequence[Bound]],
+                         are_apart: bool, *paths: Path | str) -> None:
+    """Draw runs in a window, with the bounds of each: a column for each, where they are `apart`, or all in one.
+
+    Their titles are their names.  In a column of its own the stick of a run is blue.
     """
-    figure = Figure(figsize=(11.0, 8.0), dpi=150, layout=ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.08))
-    panels = figure.subplots(3, 1, sharex=True)
-    scale, unit = force_unit(recorded['friction_force'], other['friction_force'])
-    for panel, name, factor, label in zip(panels, ('position', 'velocity', 'friction_force'), (MILLI, MILLI, scale),
-                                          ('position / mm', 'velocity / (mm/s)', f'friction force / {unit}')):
-        line(panel, recorded, name, factor, 'recorded', color=BLUE, linewidth=2.2)
-        line(panel, other, name, factor, 'what if', color=ORANGE, linewidth=1.3, linestyle=(0, (4, 1.5)))
-        panel.set_ylabel(label)
-        dress(panel)
-    panels[-1].set_xlabel('time / s')
-    figure.align_ylabels(panels)
-    head(panels[0], title)
-    save(figure, path)
+    columns = len(runs) if are_apart else 1
+    figure = Figure(figsize=(max(11.0, 4.0 * columns), 7.6), dpi=110, layout=ConstrainedLayoutEngine(w_pad=0.08))
+    grid = figure.subplots(3, columns, sharex=True, sharey='row', squeeze=False)
+    for row, (name, label, scale, curves) in zip(grid, _curves_of(runs)):
+        row[0].set_ylabel(label)
+        panels = list(row) if are_apart else list(row) * len(runs)
+        for k, (run, panel, curve) in enumerate(zip(runs, panels, curves)):
+            colour, style = _LOOKS[0 if are_apart else k]
+            if np.isfinite(curve).any():
+                panel.plot(*thinned(run.motion['time'], curve * scale), color=colour, linewidth=1.1, linestyle=style,
+                           label='' if are_apart else run.title)
+        for run, panel, of_run in zip(runs, panels, bounds):
+            if name == 'speed' and 'velocity' in run.setpoint:
+                line(panel, run.setpoint, 'velocity', scale, 'setpoint', color=BLACK, linewidth=1.0, linestyle=_DASHED)
+            for bound in of_run:
+                if bound.panel == name and bound.begin < window.end and bound.end > window.begin:
+                    _draw_bound(panel, bound, window, scale, bound.value > _FAR * _largest(curves))
+    for column, run in zip(grid.T, runs if are_apart else ()):
+        column[0].set_title(fill(run.title, _TITLES // columns), loc='left', fontsize=11, fontweight='bold')
+        _shade_sticks(column, run)
+    for panel in grid.flat:
+        dress(panel, has_legend=False)
+        panel.set_xlim(*window)
+        panel.ticklabel_format(useOffset=False)
+        if panel in grid[-1]:
+            panel.set_xlabel('time / s')
+    longest = max(map(len, lines_by_label(*grid.flat)), default=0)
+    legend_of(figure, 'upper left', *grid.flat, frameon=False, fontsize=9,
+              ncols=min(max(_LABELS // (longest + 6), 1), 5))
+    save(figure, *paths)
+
+
+def _curves_of(runs: Sequence[DrawnRun]) -> list[tuple[str, str, float, list[Numbers]]]:
+    """Return name, label, scale and SI values of speed, error and force.
+
+    The error is that to the drive unless all runs have a setpoint.
+    """
+    motions, have_setpoint = [run.motion for run in runs], all(run.setpoint for run in runs)
+    errors = [(np.interp(motion['time'], run.setpoint['time'], run.setpoint['position']) if have_setpoint
+               else motion['drive_position']) - motion['position'] for run, motion in zip(runs, motions)]
+    scale, unit = (_MICRO, 'µm') if _largest(errors) < _FINE else (MILLI, 'mm')
+    forces = [motion['drive_force'] for motion in motions]
+    force_scale, force = force_unit(*forces)
+    return [('speed', 'speed / (mm/s)', MILLI, [motion['velocity'] for motion in motions]),
+            ('error', f'{"setpoint" if have_setpoint else "drive end"} less slider / {unit}', scale, errors),
+            ('force', f'drive force / {force}', force_scale, forces)]
+
+
+def _largest(curves: Sequence[Numbers]) -> float:
+    return max(float(np.abs(curve[np.isfinite(curve)]).max(initial=0.0)) for curve in curves)
+
+
+def _draw_bound(panel: Axes, bound: Bound, window: TimeWindow, scale: float, is_far: bool) -> None:
+    panel.hlines([] if is_far else [scale * bound.value, -scale * bound.value], max(bound.begin, window.begin),
+                 min(bound.end, window.end), color=PURPLE, linewidth=1.4, linestyle=(0, (6, 2, 1, 2)),
+                 label=f'limit {bound.name}' + (', beyond the panel' if is_far else ''))
+
+
+def _shade_sticks(panels: Iterable[Axes], run: DrawnRun) -> None:
+    starts, modes = run.modes
+    ends, sticks = np.append(starts[1:], max(starts[-1], run.motion['time'][-1])), modes == Mode.STICK
+    for panel in panels:
+        panel.broken_barh(np.column_stack([starts, ends - starts])[sticks].tolist(), (0.0, 1.0), facecolors=SKY,
+                          alpha=0.22, transform=panel.get_xaxis_transform(), linewidth=0.0, label='stick', zorder=0)

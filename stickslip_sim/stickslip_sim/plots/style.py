@@ -117,7 +117,7 @@ def line(panel: Axes, samples: Mapping[str, Numbers], name: str, scale: float, l
     panel.plot(time, values * scale, label=label, **look)
 
 
-def dress(panel: Axes) -> None:
+def dress(panel: Axes, has_legend: bool = True) -> None:
     """Give a panel over time its grid and legend."""
     if not panel.has_data():
         panel.text(0.5, 0.5, 'not measured', transform=panel.transAxes, ha='center', va='center', color=GREY)
@@ -125,7 +125,7 @@ def dress(panel: Axes) -> None:
     panel.grid(axis='both', color='#dddddd', linewidth=0.6)
     panel.set_axisbelow(True)
     panel.margins(x=0.0)
-    if panel.get_legend_handles_labels()[0]:
+    if has_legend and panel.get_legend_handles_labels()[0]:
         panel.legend(loc='lower right', bbox_to_anchor=(1.0, 0.98), ncols=4, frameon=False, fontsize=9,
                      borderaxespad=0.0, handlelength=2.2)
 

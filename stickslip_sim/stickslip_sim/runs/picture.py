@@ -1,10 +1,11 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of any run: the whole of it, and beside it a window, or the last cycles of a run that is long."""
+"""Pictures of any run: the whole of it, and beside it a window, or its last cycles; and of runs over each other."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +16,10 @@ from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Sample
 from ..figures.wording import headline
 from ..plots import plot_run
-from ..plots.run import TimeWindow, drawn_run
+from ..plots.overlay import Bound, plot_over_each_other
+from ..plots.run import DrawnRun, TimeWindow, drawn_run
 from ..scene import Scene
-from .run import LOAD_COLUMN, Run, normal_force_of
+from .run import LOAD_COLUMN, STANDS, Run, normal_force_of
 from .samples import reduced
 from .simulated import SimulatedRun, columns_of_rows
 
@@ -83,20 +85,53 @@ _READABLE = 40   # cycles of the latest period, in all of a run
 _SHOWN = 5       # cycles at the end of a longer one
 _MOST_OF = 0.8   # of a run: commanded for less, that part is shown
 _MARGIN = 0.25   # of a period, before and after them
+_BESIDE_A_MOVE = 0.1   # of its length, before and behind it
 _DRAWN = ('position', 'velocity', 'drive_position', 'drive_velocity', 'drive_force', 'friction_force',
           'external_force', LOAD_COLUMN, 'mode')
 
 
 def draw_run(run: Run, window: tuple[float, float] | None, *paths: Path | str) -> None:
     """Draw a run into each path; raises InputError for a window (s) that is not in it."""
-    commands_at = _commanded(run)
-    windows = windows_of(run, window, commands_at)
-    samples = _samples_for(run, windows)
+    windows = windows_of(run, window, _commanded(run))
+    plot_run(_drawn(run, _title(run), windows, run.setpoint), windows, *paths)
+
+
+class RunBeside(NamedTuple):
+    """A run to be drawn beside others, the setpoint that its error is one to (empty: none), and limits on it."""
+
+    run: Run
+    setpoint: Columns
+    bounds: Sequence[Bound] = ()
+
+
+def draw_runs(runs: Mapping[str, RunBeside], window: tuple[float, float] | None, are_apart: bool, *paths: Path | str
+              ) -> TimeWindow:
+    """Draw runs by their names over each other, or a column for each, into each path.
+
+    Without a window (s) that of their moves; returns it.  Raises InputError for one that is not in each of them.
+    """
+    parts = [windows_of(one.run, window)[-1] if window else _move_of(*one[:2]) for one in runs.values()]
+    shown = TimeWindow(min(part.begin for part in parts), max(part.end for part in parts))
+    drawn = [_drawn(one.run, name, [shown], one.setpoint) for name, one in runs.items()]
+    plot_over_each_other(drawn, shown, [one.bounds for one in runs.values()], are_apart, *paths)
+    return shown
+
+
+def _move_of(run: Run, setpoint: Columns) -> TimeWindow:
+    """Return from when to when the setpoint moves, and some more; without one the part that its own picture shows."""
+    moves = setpoint['time'][1:][np.abs(np.diff(setpoint['position'])) > STANDS] if setpoint else np.empty(0)
+    if not len(moves):
+        return windows_of(run, None, _commanded(run))[-1]
+    margin = _BESIDE_A_MOVE * (moves[-1] - moves[0])
+    return TimeWindow(max(float(moves[0] - margin), run.begin), min(float(moves[-1] + margin), run.end))
+
+
+def _drawn(run: Run, title: str, windows: Sequence[TimeWindow], setpoint: Columns) -> DrawnRun:
     commands = reduced(run.command_blocks(), windows, ['velocity'])
-    drawn = drawn_run(_title(run), samples, run.events, commands, run.marks)
-    if run.setpoint:
-        drawn = drawn._replace(setpoint=reduced([run.setpoint], windows, ['position']))
-    plot_run(drawn, windows, *paths)
+    drawn = drawn_run(title, _samples_for(run, windows), run.events, commands, run.marks)
+    if not setpoint:
+        return drawn
+    return drawn._replace(setpoint=reduced([setpoint], windows, [name for name in setpoint if name != 'time']))
 
 
 def first_command(run: Run) -> float | None:
@@ -139,7 +174,7 @@ def windows_of(run: Run, window: tuple[float, float] | None, commanded: TimeWind
     return [whole, TimeWindow(max(begin, whole.begin), min(end, whole.end))]
 
 
-def _samples_for(run: Run, windows: list[TimeWindow]) -> Columns:
+def _samples_for(run: Run, windows: Sequence[TimeWindow]) -> Columns:
     """Return samples that a picture needs: of a run that its scene alone decides, taken for it."""
     if isinstance(run, SimulatedRun) and (run.sample_period is not None or not len(run.samples['time'])):
         return sampled(run.scene, run.events, windows)
