@@ -16,7 +16,7 @@ from .sources import Source, Sources, digest_of
 
 # the functions that Python calls, by file
 ENTRIES = {
-    'solvers/exact/engine.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'set_load', 'sample',
+    'solvers/exact/engine.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'set_load', 'step', 'sample',
                                 'energy'),
     'solvers/exact/soundness.py': ('is_sound',),
     'solvers/fixed_step/loop.py': ('start', 'advance', 'set_inputs', 'set_parameters', 'set_load', 'sample'),

@@ -212,3 +212,19 @@ def test_a_scheduler_that_goes_is_reported(shared_cluster: Cluster, tmp_path: Pa
     assert (said, error.count('\n')) == ('', 1), error
     assert f'the scheduler {shared_cluster.address} is gone' in error
     assert '--resume' in error
+
+
+def test_closed_loops_on_a_cluster_have_the_bytes_of_one_process(cluster: Cluster, tmp_path: Path) -> None:
+    controller, limits = tmp_path / 'own.py', tmp_path / 'limits.yaml'
+    controller.write_text('class Own:\n    def __init__(self, gain=5.0):\n        self.gain = gain\n'
+                          '    def __call__(self, t, measured):\n'
+                          '        return self.gain * (1e-4 - measured.slider_position)\n')
+    limits.write_text('limits: {peak_speed: {max: 1.0}}\n')
+    command = ['close-loop', f'{controller}:Own', '--scene', 'positioning', '--duration', '0.3', '--gain',
+               'gain=2:20:3', '--over', 'friction.scale=0.8:1.2:4', '--limits', str(limits)]
+    cluster.add_worker()
+    assert run([*command, '--scheduler', cluster.address, '--out', str(tmp_path / 'out')]) == 0
+    assert run([*command, '--out', str(tmp_path / 'alone')]) == 0
+    tables = [(tmp_path / name / POINTS_TABLE).read_bytes() for name in ('out', 'alone')]
+    assert tables[0] == tables[1]
+    assert tables[0].count(b'\n') >= 12

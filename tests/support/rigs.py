@@ -52,7 +52,7 @@ def tired_after(time: float) -> Solver:
             return row, -1
         return exact.SOLVER.advance(p, s, second, fraction, events, row)
 
-    return exact.SOLVER._replace(advance=advance)
+    return exact.SOLVER._replace(advance=advance, step=None)
 
 
 def run(rig: Rig, steps: int, script: Script | None = None) -> list[StepResult]:

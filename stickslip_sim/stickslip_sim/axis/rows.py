@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What goes into a solver and comes out of it: sinusoids, a table of events, rows to be filled."""
 
+from array import array
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -84,6 +85,10 @@ class SampleRow:
     def tolist(self) -> list[float]:
         """Return the numbers."""
         return list(flat(self))
+
+    def tobytes(self) -> bytes:
+        """Return the numbers as the machine has them."""
+        return array('d', flat(self)).tobytes()
 
 
 @dataclass(slots=True)

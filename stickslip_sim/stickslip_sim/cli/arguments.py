@@ -166,6 +166,21 @@ def scene_changes(help_of_set: str) -> Callable[[ClickCommand], ClickCommand]:
     return decorated
 
 
+# What a verb with a controller of the user has.
+
+def controller_options(help_of_gain: str) -> Callable[[ClickCommand], ClickCommand]:
+    """Give a command the argument `controller` and the options `scene`, `rate` and `gains`."""
+    options = (
+        click.argument('controller', metavar='FILE.py:NAME'),
+        click.option('--scene', required=True, metavar='SCENE', shell_complete=completion.complete_scenes,
+                     help='The axis and its rig: the name of a shipped scene or a file.'),
+        click.option('--rate', type=float, metavar='HZ', help='How often it is asked: time.rate, or a whole part of it '
+                                                              '[default: after each step].'),
+        click.option('--gain', 'gains', multiple=True, metavar='NAME=VALUE', help=help_of_gain),
+    )
+    return lambda command: functools.reduce(lambda decorated, option: option(decorated), reversed(options), command)
+
+
 # The options of every verb that runs a study.
 
 _OF_WORKERS = (

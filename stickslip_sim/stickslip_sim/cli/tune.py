@@ -4,19 +4,13 @@
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, scene_changes, verb
+from .arguments import SceneChanges, controller_options, scene_changes, verb
 from .files import PICTURE, STDOUT, TEXT, say_written, show, whole, write_text
 
 
 @verb(short_help='Margins of your controller, and why its loop swings.')
-@click.argument('controller', metavar='FILE.py:NAME')
-@click.option('--scene', required=True, metavar='SCENE', shell_complete=completion.complete_scenes,
-              help='The axis and its rig: the name of a shipped scene or a file.')
+@controller_options('Make the class NAME with this argument.')
 @click.option('--feed', type=float, metavar='V', help="Speed of the slip, m/s [default: the scene's largest].")
-@click.option('--rate', type=float, metavar='HZ', help='How often it is asked: time.rate, or a whole part of it '
-                                                       '[default: after each step].')
-@click.option('--gain', 'gains', multiple=True, metavar='NAME=VALUE', help='Make the class NAME with this argument.')
 @click.option('--duration', type=float, default=20.0, show_default=True, metavar='S',
               help='Of the closed loop that is simulated: half of it at the feed, half of it holding, s.')
 @click.option('--plot', type=PICTURE, metavar='FILE.png', help='Draw Bode diagrams, step response and swing.')

@@ -233,69 +233,47 @@ class _RaisedError(Exception):
 
 
 class _Encoders:
-    """The encoders of all axes, as `simulation.encoder` has those of one."""
+    """The encoders of all axes, as `simulation.encoder` has those of one: rows of slider and drive, a column a lane."""
 
     def __init__(self, scenes: Sequence[Scene]) -> None:
-        settings = [scene.rig.encoder for scene in scenes]
-        rig, grid = scenes[0].rig, scenes[0].time.rate
+        settings, rig = [scene.rig.encoder for scene in scenes], scenes[0].rig
         self._are_ideal = np.array([one.is_ideal for one in settings])
-        self._all_ideal = bool(self._are_ideal.all())
+        self._are_mixed = bool(self._are_ideal.any())
         self._resolution, self._offset, self._noise = (np.array([getattr(one, name) for one in settings])
                                                        for name in ('resolution', 'offset', 'noise'))
+        self._are_counted = self._resolution > 0.0
+        self._step = np.where(self._are_counted, self._resolution, 1.0)
         self._delays = np.array([scene.rig.encoder_delay_steps for scene in scenes])
-        self._steps, self._per_second = rig.encoder.velocity_steps, grid / rig.encoder.velocity_steps
-        self._channels = [_Channel(self, stream(rig.seed, purpose))
-                          for purpose in (Stream.SLIDER_NOISE, Stream.DRIVE_NOISE)]
-
-    def read(self, truth: Numbers) -> list[Numbers]:
-        """Return both positions and velocities, in the order of a Measurement; `truth` has what is so."""
-        if self._all_ideal:
-            return list(truth[:4])
-        slider, drive = (channel.read(position) for channel, position in zip(self._channels, truth[::2]))
-        return [np.where(self._are_ideal, true, read) for true, read in zip(truth, slider + drive)]
-
-    def counted(self, positions: Numbers, noise: float) -> Numbers:
-        """Return what is read at positions, with a random number."""
-        shifted = positions + self._offset + np.where(self._noise > 0.0, self._noise * noise, 0.0)
-        with np.errstate(all='ignore'):
-            counts = self._resolution * np.floor(shifted / self._resolution + 0.5)
-        return np.where(self._resolution > 0.0, counts, shifted)
-
-    @property
-    def is_noisy(self) -> bool:
-        """Whether there is any noise."""
-        return bool((self._noise > 0.0).any())
-
-    @property
-    def delays(self) -> Any:
-        """Of each axis, steps."""
-        return self._delays
-
-    @property
-    def difference(self) -> tuple[int, float]:
-        """Over how many steps a velocity is taken, and by what it is multiplied, 1/s."""
-        return self._steps, self._per_second
-
-
-class _Channel:
-    """One encoder of each axis: what it was and what it read."""
-
-    def __init__(self, encoders: _Encoders, noise: np.random.RandomState) -> None:
-        self._encoders, self._noise = encoders, noise
+        self._most_steps, self._lanes = int(self._delays.max()), np.arange(len(scenes))
+        self._steps, self._per_second = (rig.encoder.velocity_steps, scenes[0].time.rate / rig.encoder.velocity_steps)
+        self._streams = ([stream(rig.seed, purpose) for purpose in (Stream.SLIDER_NOISE, Stream.DRIVE_NOISE)]
+                         if self._noise.any() else [])
         self._positions: list[Numbers] = []
         self._readings: list[Numbers] = []
 
-    def read(self, positions: Numbers) -> tuple[Numbers, Numbers]:
-        """Return position and velocity; before the first reading all readings were as that."""
-        encoders, kept = self._encoders, self._positions
-        most, (steps, per_second) = int(encoders.delays.max()), encoders.difference
-        kept.append(positions)
-        del kept[:-most - 1]
-        delayed = positions
-        if most:
-            delayed = np.array(kept)[np.maximum(len(kept) - 1 - encoders.delays, 0), np.arange(len(positions))]
-        noise = float(self._noise.standard_normal()) if encoders.is_noisy else 0.0
-        reading = encoders.counted(delayed, noise)
-        self._readings.append(reading)
-        del self._readings[:-steps - 1]
-        return reading, (reading - self._readings[0]) * per_second
+    def read(self, truth: Numbers) -> list[Numbers]:
+        """Return both positions and velocities, in the order of a Measurement; `truth` has what is so."""
+        if self._are_mixed and self._are_ideal.all():
+            return list(truth[:4])
+        reading = self._counted(self._delayed(truth[0:4:2]))
+        self._readings.append(reading)    # before the first all were as that
+        del self._readings[:-self._steps - 1]
+        slider, drive = zip(reading, (reading - self._readings[0]) * self._per_second)
+        read = [*slider, *drive]
+        return [np.where(self._are_ideal, *pair) for pair in zip(truth, read)] if self._are_mixed else read
+
+    def _delayed(self, positions: Numbers) -> Numbers:
+        if not self._most_steps:
+            return positions
+        self._positions.append(positions)
+        del self._positions[:-self._most_steps - 1]
+        at = np.maximum(len(self._positions) - 1 - self._delays, 0)
+        found: Numbers = np.array(self._positions)[at, :, self._lanes]
+        return found.T
+
+    def _counted(self, positions: Numbers) -> Numbers:
+        shifted = positions + self._offset + 0.0    # no -0.0, as alone
+        if self._streams:
+            noise = np.array([[one.standard_normal()] for one in self._streams])
+            shifted = positions + self._offset + np.where(self._noise > 0.0, self._noise * noise, 0.0)
+        return np.where(self._are_counted, self._step * np.floor(shifted / self._step + 0.5), shifted)

@@ -4,14 +4,13 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from struct import Struct
 from typing import Any
 
 from ..controllers.own_controller import Measurement, OwnController
 from ..core.arrays import Numbers
 from ..core.errors import ControllerError, InputError, SolverError
 from ..core.time_grid import Instants, decimal, instants
-from ..core.types import Progress, Sample, tuple_of
+from ..core.types import Instant, Progress, tuple_of
 from ..inputs import SceneOrName, scene_of
 from ..realtime.commands import Watchdog
 from ..runs.samples import MOST_IN_MEMORY
@@ -23,8 +22,6 @@ from .setpoint import Given, as_setpoints, setpoints_at
 
 _REPORTED_EVERY = 1000   # steps
 _ROUNDED = 1e-6          # steps, that a duration may be off by: 0.1 + 0.2 s
-_DRIVE_FORCE = Sample._fields.index('drive_force')
-_ROW = Struct(f'{len(Sample._fields)}d')
 
 
 def close_loop(controller: Callable[[float, Measurement], Any], scene: SceneOrName, duration: float,
@@ -104,7 +101,7 @@ class _Loop:
         self._rig = scene.make_rig()
         self._watchdog = Watchdog(scene.command.timeout)
         self._times, self._wanted = times, wanted
-        self._record = LoopRecord(self._rig.simulator.sample().mode, len(times.seconds) * _ROW.size)
+        self._record = LoopRecord(self._rig.simulator.sample().mode)
 
     def run(self, progress: Progress) -> ClosedLoopRun:
         """Make all steps."""
@@ -120,33 +117,35 @@ class _Loop:
 
     def _make_steps(self, progress: Progress) -> None:
         own, record, rig, every = self._own, self._record, self._rig, self._every
-        ask, limit, rows, size = own.ask, self._scene.command.max_velocity, record.rows, _ROW.size
+        ask, limit, make_row = own.ask, self._scene.command.max_velocity, rig.make_row
+        take_row, measure, order = record.rows.append, record.measured.append, record.commands.append
         watchdog, now = self._watchdog if self._watchdog.is_on else None, self._times.nanoseconds().tolist()
         times: list[float] = (self._times.seconds + self._times.fractions).tolist()
         setpoints = as_setpoints(self._wanted, len(times))
         last = len(times) - 1
         velocity = force = None
         held = Measured(0.0, 0.0, 0.0, 0.0)
-        for step, (time, setpoint) in enumerate(zip(times, setpoints)):
+        ends = [tuple_of(Instant, end) for end in zip(self._times.seconds.tolist(), self._times.fractions.tolist())]
+        for step, (time, end, setpoint) in enumerate(zip(times, ends, setpoints)):
             if watchdog is not None and (silence := watchdog.silence(rig.counts.heard, now[max(step - 1, 0)])):
                 rig.time_out(silence)
-            row, measured, events, rig_events = rig.make_row(velocity, force)
-            _ROW.pack_into(rows, step * size, *row)
+            row, measured, events, rig_events = make_row(velocity, force, end)
+            take_row(row.tobytes())
             if events or rig_events:
                 record.note(step, events, rig_events)
-            record.measured.append(measured)
+            measure(measured)
             held = measured or held
             velocity = force = None
             if step % every == 0 and step < last:
                 try:
-                    answer = ask(time, tuple_of(Measurement, (*held, row[_DRIVE_FORCE], measured is None, setpoint)))
+                    answer = ask(time, tuple_of(Measurement, (*held, row.drive_force, measured is None, setpoint)))
                 except Exception as error:
                     own.failed(error, step, time, setpoint is None)
                 if type(answer) is float and -limit <= answer <= limit:
                     velocity = answer
                 else:
                     velocity, force = own.command(answer, step, time)
-                record.commands.append((step + 1, velocity, force))
+                order((step + 1, velocity, force))
             if progress and step % _REPORTED_EVERY == 0:
                 progress(step / last)
 

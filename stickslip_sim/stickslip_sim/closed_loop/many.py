@@ -252,6 +252,18 @@ def arguments_of(texts: Sequence[str]) -> dict[str, object]:
         parse_gain(text) for text in texts if not is_range(text.partition('=')[2]))
 
 
+def ranges_of(texts: Sequence[str]) -> dict[str, str]:
+    """Return ranges of parameters as `--over` gives them; raises InputError."""
+    found: dict[str, str] = {}
+    for text in texts:
+        name, _, given = map(str.strip, text.partition('='))
+        if not name or not given or name in found:
+            raise InputError('--over', text, 'A.B=LOW:HIGH[:N][:log], once for each parameter',
+                             'for example friction.scale=0.8:1.2')
+        found[name] = given
+    return found
+
+
 def is_range(given: object) -> bool:
     """Whether what is given for an argument is a range: numbers with colons between."""
     if not isinstance(given, str) or ':' not in given:

@@ -31,11 +31,11 @@ _NOTHING = Measured(0.0, 0.0, 0.0, 0.0)    # before the first measurement
 
 
 class LoopRecord:
-    """What came of the steps so far; `start` is the mode at the start, `size` how many bytes all samples have."""
+    """What came of the steps so far; `start` is the mode at the start."""
 
-    def __init__(self, start: Mode, size: int) -> None:
+    def __init__(self, start: Mode) -> None:
         self.start = start
-        self.rows = bytearray(size)                                        # the numbers of samples
+        self.rows: list[bytes] = []                                        # the numbers of samples
         self.measured: list[Measured | None] = []
         self.commands: list[tuple[int, float | None, float | None]] = []   # step from which on, m/s, N
         self.events: list[tuple[int, Event]] = []                          # step into which it fell
@@ -63,7 +63,7 @@ class ClosedLoopRun(SimulatedRun):
     def of(cls, scene: Scene, record: LoopRecord, rig: Rig, controller: str, every: int, wanted: Numbers | None,
            cost: tuple[float, float]) -> 'ClosedLoopRun':
         """Return the run of a rig that was made so far, with what it cost (CPU and wall time, s)."""
-        columns = columns_of_rows(_rows(record.rows, rig.step + 1))
+        columns = columns_of_rows(np.frombuffer(b''.join(record.rows)).reshape(-1, len(Sample._fields)))
         time, simulator, events = columns['time'], rig.simulator, [event for _, event in record.events]
         end = max(float(time[-1]), float(scene.time.step))
         figures = summary(events, end, record.start)
@@ -95,9 +95,8 @@ class ClosedLoopRun(SimulatedRun):
     @property
     def commands(self) -> Columns:
         """The velocities that were ordered, each at the start of the first step in which it holds."""
-        ordered = [(step, velocity) for step, velocity, _ in self.orders.commands if velocity is not None]
-        steps = np.array([step - 1 for step, _ in ordered], dtype=np.int64)
-        return {'time': self.samples['time'][steps], 'velocity': np.array([velocity for _, velocity in ordered])}
+        (steps, velocities), _ = self.orders.commanded()
+        return {'time': self.samples['time'][steps - 1], 'velocity': velocities}
 
     @property
     def marks(self) -> list[Mark]:
@@ -119,8 +118,3 @@ class ClosedLoopRun(SimulatedRun):
         """
         write_steps(folder, RunFacts.of(self.scene), self.samples, self.orders, self.receipt, self.setpoint,
                     slider_joint(self.scene.joint_prefix))
-
-
-def _rows(data: bytearray, count: int) -> Numbers:
-    """Return the first samples as rows."""
-    return np.frombuffer(data).reshape(-1, len(Sample._fields))[:count]

@@ -3,7 +3,7 @@
 """Writes the bag of an offline run: topics, fields and conventions of the node's, stamps are simulation time."""
 
 import shutil
-from bisect import bisect_left, bisect_right
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
@@ -83,10 +83,7 @@ def write_steps(folder: Path | str, facts: RunFacts, samples: Columns, orders: '
         for first in range(0, len(samples['time']), _BLOCK):
             part, wanted = ({name: column[first:first + _BLOCK] for name, column in columns.items()}
                             for columns in (samples, setpoint))
-            count = bisect_left(others, first + _BLOCK, key=lambda other: other.place)
-            due, others = others[:count], others[count:]
-            bag.write(steps.around(first, part, [other._replace(place=other.place - first) for other in due]
-                                   if first else due, wanted))
+            bag.write(steps.around(first, part, [of.between(first, first + _BLOCK) for of in others], wanted))
         bag.close(receipt)
     except BaseException:
         bag.abandon()
@@ -112,13 +109,18 @@ def samples_of(columns: Mapping[str, NDArray[Any]]) -> Iterator[Sample]:
         yield Sample(second, fraction, Mode(int(mode)), int(direction), *rest)
 
 
-class _Other(NamedTuple):
-    """A message between those of the steps: before which of them, as a record, and its log time (ns)."""
+class Others(NamedTuple):
+    """Messages of a channel between those of the steps: before which of them each is, its log time (ns), its record."""
 
-    place: int
     channel: int
-    time: int
-    record: bytes
+    places: NDArray[np.int64]
+    times: NDArray[np.int64]
+    records: NDArray[Any] | list[bytes]     # rows of one size, or bytes
+
+    def between(self, first: int, last: int) -> 'Others':
+        """Return those from a step on and before another, with places counted from it."""
+        begin, end = np.searchsorted(self.places, (first, last)).tolist()
+        return Others(self.channel, self.places[begin:end] - first, self.times[begin:end], self.records[begin:end])
 
 
 class Orders(NamedTuple):
@@ -127,6 +129,12 @@ class Orders(NamedTuple):
     commands: Sequence[tuple[int, float | None, float | None]] = ()
     events: Sequence[tuple[int, Event]] = ()
     rig_events: Sequence[tuple[int, RigEvent]] = ()
+
+    def commanded(self) -> list[tuple[NDArray[np.int64], NDArray[np.float64]]]:
+        """Return the steps from which on velocities hold, with these, and the same of forces."""
+        columns = np.array(self.commands, np.float64).reshape(-1, 3)    # None is no number
+        return [(columns[known, 0].astype(np.int64), columns[known, k])
+                for k in (1, 2) for known in (~np.isnan(columns[:, k]),)]
 
 
 NO_ORDERS = Orders()
@@ -172,11 +180,12 @@ class StepMessages:
         A command is that of the next step.
         """
         at = Instants(samples['second'], samples['fraction'])
-        others = [*self._commands(first, samples, at.nanoseconds()), *self._events(first, at, events)]
-        others.sort(key=lambda other: other.place)
+        places = [at.before(event.instant) for event in events]
+        others = [*self._commands(first, samples, at.nanoseconds()),
+                  self._events(places, [max(first + place, 1) for place in places], events)]
         return self.around(first, samples, others)
 
-    def around(self, first: int, samples: Columns, others: Sequence[_Other], setpoint: Columns | None = None
+    def around(self, first: int, samples: Columns, others: Sequence[Others], setpoint: Columns | None = None
                ) -> MessageBlock:
         """Return the states at the ends of steps from `first` on, and the setpoint, with other messages in front."""
         times = Instants(samples['second'], samples['fraction']).nanoseconds()
@@ -186,66 +195,66 @@ class StepMessages:
             rows.append(self._setpoint.packed(times, times, steps, setpoint))
         return interleaved(rows, times, others)
 
-    def of_orders(self, orders: Orders, times: NDArray[np.int64]) -> list[_Other]:
+    def of_orders(self, orders: Orders, times: NDArray[np.int64]) -> list[Others]:
         """Return the messages of orders in front of their steps, in the order of a node; `times` of steps in ns."""
-        codec, begins = MessageCodec([topics.RIG_EVENT.type]), [0, *times.tolist()]
-        found = []
-        for step, rig_event in orders.rig_events:
-            fields = messages.rig_event(step, begins[step], begins[step], rig_event)
-            data = codec.encode(topics.RIG_EVENT.type, fields)
-            found.append(self._other(topics.RIG_EVENT, step, begins[step], step, data))
-        velocities = [(step, velocity) for step, velocity, _ in orders.commands]
-        forces = [(step, force) for step, _, force in orders.commands]
-        for topic, values in ((topics.DRIVE_VELOCITY, velocities), (topics.EXTERNAL_FORCE, forces)):
-            pack = flat_layout(topic.type).pack
-            found += [self._other(topic, step, begins[step], step, pack(begins[step], value))
-                      for step, value in values if value is not None]
-        for step, event in orders.events:
-            if event.kind != EventKind.KNOT:
-                time, number = event.instant.nanoseconds, max(step, 1)
-                found.append(self._other(topics.MODE_EVENT, step, time, number, self._event.pack(time, number, event)))
-        return sorted(found, key=lambda other: other.place)
+        codec, begins = MessageCodec([topics.RIG_EVENT.type]), np.append(0, times)
+        channel, steps = CHANNELS[topics.RIG_EVENT], np.array([step for step, _ in orders.rig_events], np.int64)
+        records = []
+        for step, time, (_, event) in zip(steps.tolist(), begins[steps].tolist(), orders.rig_events):
+            data = codec.encode(topics.RIG_EVENT.type, messages.rig_event(step, time, time, event))
+            records.append(record_of(channel, step, time, time, data))
+        found = [Others(channel, steps, begins[steps], records)]
+        for topic, (steps, values) in zip((topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE), orders.commanded()):
+            found.append(_values(topic, steps, begins[steps], steps, values))
+        events = [(step, event) for step, event in orders.events if event.kind != EventKind.KNOT]
+        return [*found, self._events([step for step, _ in events], [max(step, 1) for step, _ in events],
+                                     [event for _, event in events])]
 
-    def _events(self, first: int, at: Instants, events: Sequence[Event]) -> Iterator[_Other]:
-        """Yield the transitions; each belongs to the step that it fell into, counted from 1."""
-        for event in events:
-            place = at.before(event.instant)
-            step, time = max(first + place, 1), event.instant.nanoseconds
-            yield self._other(topics.MODE_EVENT, place, time, step, self._event.pack(time, step, event))
+    def _events(self, places: Sequence[int], steps: Sequence[int], events: Sequence[Event]) -> Others:
+        """Return transitions; each belongs to the step that it fell into, counted from 1."""
+        channel, times = CHANNELS[topics.MODE_EVENT], [event.instant.nanoseconds for event in events]
+        return Others(channel, np.array(places, np.int64), np.array(times, np.int64),
+                      [record_of(channel, step, time, time, self._event.pack(time, step, event))
+                       for step, time, event in zip(steps, times, events)])
 
-    def _commands(self, first: int, samples: Columns, times: NDArray[np.int64]) -> Iterator[_Other]:
+    def _commands(self, first: int, samples: Columns, times: NDArray[np.int64]) -> Iterator[Others]:
         """Yield the commands that are new, behind the state at the start of their step."""
         for topic, name in ((topics.DRIVE_VELOCITY, 'drive_velocity'), (topics.EXTERNAL_FORCE, 'external_force')):
             values = samples[name]
-            for k in np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0).tolist():
-                value, time = float(values[k]), int(times[k])
-                if value != self._latest.get(topic):
-                    self._latest[topic] = value
-                    data = flat_layout(topic.type).pack(time, value)
-                    yield self._other(topic, k + 1, time, first + k + 1, data)
-
-    def _other(self, topic: Topic, place: int, time: int, step: int, data: bytes) -> _Other:
-        channel = CHANNELS[topic]
-        return _Other(place, channel, time, record_of(channel, step, time, time, data))
+            latest, self._latest[topic] = self._latest.get(topic, np.nan), float(values[-1])
+            new = np.flatnonzero(np.diff(values, prepend=latest) != 0.0)
+            yield _values(topic, new + 1, times[new], first + new + 1, values[new])
 
 
-def interleaved(rows: Sequence[NDArray[Any]], times: NDArray[np.int64], others: Sequence[_Other]) -> MessageBlock:
+def _values(topic: Topic, places: NDArray[np.int64], times: NDArray[np.int64], steps: NDArray[np.int64],
+            values: NDArray[np.float64]) -> Others:
+    """Return messages that are a number each."""
+    layout = flat_layout(topic.type)
+    rows = MessageRows(CHANNELS[topic], layout).packed(times, times, steps, {layout.names[0]: values})
+    return Others(CHANNELS[topic], places, times, rows)
+
+
+def interleaved(rows: Sequence[NDArray[Any]], times: NDArray[np.int64], others: Sequence[Others]) -> MessageBlock:
     """Return the messages of steps, those of a step one behind the other, with others in front of their steps."""
-    kinds, places = len(rows), np.array([other.place * len(rows) for other in others], np.int64)
-    size = sum(of.itemsize for of in rows)
-    data = np.concatenate([of.view(np.uint8).reshape(len(times), -1) for of in rows], axis=1).tobytes()
-    pieces: list[bytes] = []
-    done = 0
-    for other in others:
-        pieces += [data[done * size:other.place * size], other.record]
-        done = other.place
-    lengths = np.insert(np.tile([of.itemsize for of in rows], len(times)), places,
-                        [len(other.record) for other in others])
-    return MessageBlock(
-        b''.join([*pieces, data[done * size:]]), np.cumsum(lengths) - lengths,
-        np.insert(np.tile([int(of['channel'][0]) for of in rows], len(times)), places,
-                  [other.channel for other in others]),
-        np.insert(np.repeat(times, kinds), places, [other.time for other in others]))
+    every = np.arange(len(times))
+    groups = [*others, *(Others(int(of['channel'][0]), every, times, of) for of in rows)]
+    sizes = [np.array([*map(len, of.records)], np.int64) if isinstance(of.records, list)
+             else np.full(len(of.records), of.records.itemsize) for of in groups]
+    order = np.argsort(np.concatenate([of.places for of in groups]), kind='stable')
+    lengths = np.concatenate(sizes)[order]
+    starts = np.cumsum(lengths) - lengths
+    places = np.empty_like(starts)
+    places[order] = starts
+    data = np.empty(int(lengths.sum()), np.uint8)
+    for of, at in zip(groups, np.split(places, np.cumsum([len(size) for size in sizes[:-1]]))):
+        if isinstance(of.records, list):
+            for place, record in zip(at.tolist(), of.records):
+                data[place:place + len(record)] = np.frombuffer(record, np.uint8)
+        elif len(at):
+            kind = np.dtype((np.void, of.records.itemsize))
+            np.ndarray(len(data) - kind.itemsize + 1, kind, data, strides=(1,))[at] = of.records.view(kind)
+    channels = np.repeat([of.channel for of in groups], [len(of.places) for of in groups])[order]
+    return MessageBlock(data.tobytes(), starts, channels, np.concatenate([of.times for of in groups])[order])
 
 
 def _in_blocks(samples: Iterable[Sample]) -> Iterator[Columns]:

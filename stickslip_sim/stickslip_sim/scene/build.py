@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """From values to a scene: each section becomes an object of a room below, which checks it."""
 
-import hashlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -49,7 +48,7 @@ from .model import (
     time_settings,
 )
 from .schema import BACKWARD, BY_NAME, FILE_SETTINGS, JOINT_PREFIX, PROFILES, backward_name, forward_name
-from .values import complete_values, scene_text, section_of
+from .values import complete_values, section_of
 
 # The friction of a scene, from complete values: forwards, and backwards where that differs.
 
@@ -164,7 +163,6 @@ def scene_from_values(values: Mapping[str, Any], summary: str = '') -> Scene:
     if values.get('record.log_time') == 'wall' and not time.is_wall_time:
         raise InputError('record.log_time', 'wall', 'simulation unless time.mode is realtime and time.factor is 1',
                          'stamps are simulation time here, and so are those of other bags: leave it out')
-    text = scene_text(values)
     return Scene(
         name=values['scene'],
         summary=summary or _summary(values),
@@ -181,8 +179,6 @@ def scene_from_values(values: Mapping[str, Any], summary: str = '') -> Scene:
         joint_prefix=str(values.get(JOINT_PREFIX.name, '')),
         seed=values['seed'],
         values=values,
-        text=text,
-        hash=hashlib.sha256(text.encode()).hexdigest(),
         normal_load=load,
     )
 

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A scene: everything that decides a run, checked and ready for the simulator."""
 
+import hashlib
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from ..axis import Axis, InitialState
@@ -19,6 +21,7 @@ from ..simulation.rig import Rig, RigSettings
 from ..simulation.simulator import Simulator
 from ..simulation.solved_axis import SolverOf
 from ..solvers import Solver, adaptive, exact, fixed_step
+from .values import scene_text
 
 # How the motion is computed, and the solver that these settings make.
 
@@ -148,12 +151,11 @@ class ProfileSource(NamedTuple):
     unit: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Scene:
-    """One scene; `values` are all of its parameters by dotted name, `text` is the same as a parameter file.
+    """One scene; `values` are all of its parameters by dotted name.
 
-    `hash` is the sha256 of the text in hexadecimal.  `summary` is one line for people and no part of the scene, nor are
-    the `sources` of profiles from files, by section.
+    `summary` is one line for people and no part of the scene, nor are the `sources` of profiles from files, by section.
     """
 
     name: str
@@ -171,10 +173,18 @@ class Scene:
     joint_prefix: str     # of the names of joints and frames
     seed: int
     values: dict[str, object] = field(hash=False)
-    text: str
-    hash: str
     sources: Mapping[str, ProfileSource] = field(default_factory=dict, compare=False)
     normal_load: InputProfile | None = None   # N, on top of the normal force of the axis
+
+    @cached_property
+    def text(self) -> str:
+        """The scene as a parameter file."""
+        return scene_text(self.values)
+
+    @cached_property
+    def hash(self) -> str:
+        """The sha256 of the text in hexadecimal."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
 
     def make_rig(self) -> Rig:
         """Return the axis and its rig at the start."""

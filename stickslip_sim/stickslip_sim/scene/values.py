@@ -34,8 +34,8 @@ def complete_values(values: Mapping[str, object]) -> dict[str, Any]:
 
 def section_of(values: Mapping[str, Any], section: str) -> dict[str, Any]:
     """Return the values of a section (`friction.static`) by their names in it, those of sections inside it too."""
-    start = len(section) + 1
-    return {name[start:]: value for name, value in values.items() if name.startswith(f'{section}.')}
+    prefix = f'{section}.'
+    return {name[len(prefix):]: value for name, value in values.items() if name.startswith(prefix)}
 
 
 def stated(values: Mapping[str, object]) -> dict[str, object]:

@@ -50,12 +50,12 @@ class Drive:
 
         Returns whether the limits let it have that velocity by the end of the step; those of a frozen drive do.
         """
-        limits = self._limits
-        is_within = -limits.velocity <= velocity <= limits.velocity
-        is_followed = is_within and (self._within_reach == math.inf or self._frozen
-                                     or abs(velocity - self._at(now)) <= self._within_reach)
-        target = velocity if is_within else math.copysign(limits.velocity, velocity)
-        acceleration = min(acceleration, limits.acceleration)
+        fastest = self._limits.velocity
+        is_followed = is_within = -fastest <= velocity <= fastest
+        target = velocity if is_within else math.copysign(fastest, velocity)
+        if self._within_reach != math.inf:
+            is_followed = is_within and (self._frozen or abs(velocity - self._at(now)) <= self._within_reach)
+            acceleration = min(acceleration, self._limits.acceleration)
         if target != self._target or acceleration != self._acceleration:
             self._target, self._acceleration = target, acceleration
             if not self._frozen:

@@ -6,10 +6,10 @@ measured(n) = resolution · round((position(n − delay) + offset + noise) / res
 velocity(n) = (measured(n) − measured(n − k)) · rate / k, k = `velocity_steps`
 """
 
-import math
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import floor
 from typing import NamedTuple
 
 import numpy as np
@@ -61,8 +61,10 @@ class Encoder:
     def measure(self, position: float, velocity: float, drive_position: float, drive_velocity: float,
                 effect: Effect = NO_EFFECT) -> Measured | None:
         """Return the measurement at the end of a step, None when it is lost."""
-        slider = self._slider.read(position, velocity, effect.encoder_step, effect.encoder_frozen)
-        measured = slider + self._drive.read(drive_position, drive_velocity)
+        of_drive = self._drive.read(drive_position, drive_velocity)
+        if effect is NO_EFFECT:
+            return tuple_of(Measured, self._slider.read(position, velocity) + of_drive)
+        measured = self._slider.read(position, velocity, effect.encoder_step, effect.encoder_frozen) + of_drive
         if effect.encoder_kept < 1.0 and self._dropout.random_sample() >= effect.encoder_kept:
             return None
         return tuple_of(Measured, measured)
@@ -86,21 +88,23 @@ class _Sampled:
     """Counts, and takes the velocity from the difference of counts, as a drive does."""
 
     def __init__(self, settings: EncoderSettings, rate: float, delay_steps: int, noise: np.random.RandomState) -> None:
-        self._settings = settings
+        self._resolution, self._offset, self._scale = settings.resolution, settings.offset, settings.noise
         self._per_second = rate / settings.velocity_steps
         self._noise = noise
         self._waiting_noise: Iterator[float] = iter(())
-        self._delayed: deque[float] = deque(maxlen=delay_steps + 1)
+        self._delayed = deque[float](maxlen=delay_steps + 1) if delay_steps else None
         self._readings: deque[float] = deque(maxlen=settings.velocity_steps + 1)
 
     def read(self, position: float, velocity: float, shift: float = 0.0, is_frozen: bool = False
              ) -> tuple[float, float]:
         """Return position and velocity; before the first reading all readings were as that."""
-        settings, readings = self._settings, self._readings
-        self._delayed.append(position)
-        reading = self._delayed[0] + settings.offset + shift + (self._next_noise() if settings.noise else 0.0)
-        if resolution := settings.resolution:
-            reading = resolution * math.floor(reading / resolution + 0.5)
+        readings = self._readings
+        if self._delayed is not None:
+            self._delayed.append(position)
+            position = self._delayed[0]
+        reading = position + self._offset + shift + (self._next_noise() if self._scale else 0.0)
+        if resolution := self._resolution:
+            reading = resolution * floor(reading / resolution + 0.5)
         if is_frozen and readings:
             reading = readings[-1]
         readings.append(reading)
@@ -108,6 +112,6 @@ class _Sampled:
 
     def _next_noise(self) -> float:
         for number in self._waiting_noise:
-            return self._settings.noise * number
+            return self._scale * number
         self._waiting_noise = iter(self._noise.standard_normal(_BLOCK).tolist())
-        return self._settings.noise * next(self._waiting_noise)
+        return self._scale * next(self._waiting_noise)

@@ -30,6 +30,8 @@ class Inputs:
         drive, force = self._first
         self.drive: Input = drive
         self.force: Input = force
+        self._steady_force: Input | None = None    # one of the same value from now on
+        self._steady = 0.0
         v, f = drive.piece_at(0.0), force.piece_at(0.0)
         self.go_on(min(v.end, f.end))
         return v, f
@@ -52,9 +54,14 @@ class Inputs:
     def enter(self, time: float) -> tuple[float, float, float, float]:
         """Return drive velocity, its rate, force and its rate from a time on, s, up to where their pieces end."""
         drive, force = self.drive, self.force
-        v, v_rate, v_end = (drive + 0.0, 0.0, math.inf) if type(drive) is float else _pieces_at(drive, time)
-        f, f_rate, f_end = _pieces_at(force, time)
         self.are_commanded = False
+        if force is self._steady_force and type(drive) is float:
+            self.until = math.inf
+            return drive + 0.0, 0.0, self._steady, 0.0
+        v, v_rate, v_end = _pieces_at(drive, time)
+        f, f_rate, f_end = _pieces_at(force, time)
+        if f_rate == 0.0 and f_end == math.inf:    # from now on
+            self._steady_force, self._steady = force, f
         self.until = v_end if v_end <= f_end else f_end
         return v, v_rate, f, f_rate
 

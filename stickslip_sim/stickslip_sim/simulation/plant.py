@@ -12,7 +12,7 @@ from ..core.errors import InputError, SolverError
 from ..core.input_profile import InputProfile, constant, plain_of, profile_of
 from ..friction import SmoothKinetic
 from .drive import Drive
-from .faults import Faults
+from .faults import Effect, Faults
 from .simulator import Simulator
 
 # Friction of an axis scaled as a whole, as when lubrication changes.
@@ -48,6 +48,7 @@ class Plant:
         self._axis = self._entered = simulator.axis      # ordered, and acting; both without faults
         self._force = force              # without faults
         self._friction_scale = 1.0
+        self._acting: Effect | None = None    # of the faults, since `act`
 
     def rewind(self) -> None:
         """Bring the simulator back to time 0, without faults; the parameters of the axis stay as they are."""
@@ -70,6 +71,10 @@ class Plant:
     def act(self) -> None:
         """Let all that changed take effect at once; raises SolverError when the faults leave no axis to go on with."""
         effect = self._faults.effect
+        if effect is self._acting and self._axis is self._entered:    # only the inputs changed
+            self._set_inputs(effect.force_pulse)
+            self.is_changed = False
+            return
         scale = effect.friction_scale
         is_other = self._axis is not self._entered or scale != self._friction_scale
         falls, self._friction_scale, self._entered = scale < self._friction_scale, scale, self._axis
@@ -79,7 +84,7 @@ class Plant:
         self._set_inputs(effect.force_pulse)
         if falls:    # last: what held before and holds afterwards must not break away in between
             self._change_axis(scale)
-        self.is_changed = False
+        self._acting, self.is_changed = effect, False
 
     def checkpoint(self) -> dict[str, Any]:
         """Return what was ordered, what acts and how the axis moves, as plain data."""
@@ -91,7 +96,7 @@ class Plant:
         """Go on from a checkpoint, with the parameters of the axis that held then."""
         self._drive.restore(saved['drive'])
         self._force, acting_force = profile_of(saved['force']), profile_of(saved['acting_force'])
-        self._friction_scale = float(saved['friction_scale'])
+        self._friction_scale, self._acting = float(saved['friction_scale']), None
         axis = with_friction_scaled(self._axis, self._friction_scale)
         self._simulator.restore(saved['simulator'], axis, self._drive.profile, acting_force)
 
@@ -104,11 +109,11 @@ class Plant:
             raise SolverError(f'the faults in force scale friction by {friction_scale:g}: {error}') from None
 
     def _set_inputs(self, pulse: float) -> None:
-        simulator = self._simulator
+        inputs = self._simulator.inputs
         drive, force = self._drive.profile, self._force.plus(pulse) if pulse else self._force
-        old_drive, old_force = simulator.drive, simulator.force
-        force = old_force if force is old_force or force == old_force else force
-        if drive != old_drive:
-            simulator.set_inputs(drive, force)
-        elif force is not old_force:
-            simulator.set_inputs(old_drive, force)
+        if force is not inputs.force and force == inputs.force:
+            force = inputs.force
+        if drive != inputs.drive:
+            inputs.set(drive, force)
+        elif force is not inputs.force:
+            inputs.set(inputs.drive, force)

@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..axis import Axis, InitialState
+from ..axis.rows import SampleRow
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Grid, Instants
-from ..core.types import Event, Instant, Sample, tuple_of
+from ..core.types import Event, Instant, tuple_of
 from ..solvers import Solver
 from .drive import CommandChannel, Drive, DriveLimits
 from .encoder import Encoder, EncoderSettings, Measured
@@ -40,9 +41,8 @@ class RigSettings:
     faults: tuple[Fault, ...] = ()
 
 
-# What comes of a step, as numbers: a sample, a measurement, events at their times and at the start of the step.
-StepRow = tuple[list[float], Measured | None, list[Event], list[RigEvent]]
-_X, _V, _S, _DRIVE = map(Sample._fields.index, ('position', 'velocity', 'drive_position', 'drive_velocity'))
+# What comes of a step: the record of a sample, a measurement, events at their times and at the start of the step.
+StepRow = tuple[SampleRow, Measured | None, list[Event], list[RigEvent]]
 
 
 class Rig:
@@ -175,13 +175,16 @@ class Rig:
         row, measured, events, rig_events = self.make_row(velocity, force)
         return tuple_of(StepResult, (self.step, velocity, force, rig_events, events, sample_of(row), measured))
 
-    def make_row(self, velocity: float | None, force: float | None) -> StepRow:
-        """Make the next step as `make_step` does; the numbers of its sample are a list."""
+    def make_row(self, velocity: float | None, force: float | None, end: Instant | None = None) -> StepRow:
+        """Make the next step as `make_step` does; the record of its sample is filled anew by the next.
+
+        Its `end` need not be calculated where it is known.
+        """
         if velocity is not None and not isfinite(velocity):
             raise _not_finite('velocity', velocity, 'm/s')
         if force is not None and not isfinite(force):
             raise _not_finite('force', force, 'N')
-        step, faults, plant, simulator = self.step + 1, self._faults, self._plant, self.simulator
+        step, faults, plant = self.step + 1, self._faults, self._plant
         if step >= faults.next_change and step > 0:
             self._enter_faults(step)
         if velocity is not None or self._channel.under_way:
@@ -191,10 +194,10 @@ class Rig:
         if plant.is_changed:
             plant.act()
         rig_events, self._rig_events = self._rig_events, []
-        events, row = simulator.step(self._grid.instant(step))
+        events, row = self.simulator.step(end or self._grid.instant(step))
         self.step = step
-        measured = (self._encoder.measure(row[_X], row[_V], row[_S], row[_DRIVE], faults.effect) if self._measures
-                    else None)
+        measured = (self._encoder.measure(row.position, row.velocity, row.drive, row.drive_velocity, faults.effect)
+                    if self._measures else None)
         return row, measured, events, rig_events
 
     def advance(self, to: Instant) -> list[Event]:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..axis import Axis, InitialState, check_start
+from ..axis.rows import SampleRow
 from ..core.errors import InputError
 from ..core.input_profile import Input, InputProfile
 from ..core.time_grid import Instants
@@ -33,7 +34,7 @@ class Simulator:
                  solver: Solver | SolverOf = exact.SOLVER, accounting: bool = False,
                  load: InputProfile | None = None) -> None:
         check_start(axis, initial, load.value_at(0.0) if load else 0.0)
-        self._inputs = LoadedInputs(drive, force, load) if load else Inputs(drive, force)
+        self.inputs = self._inputs = LoadedInputs(drive, force, load) if load else Inputs(drive, force)
         self._initial = initial
         self._solved = SolvedAxis(axis, solver if callable(solver) else lambda _: solver, self._inputs, load,
                                   accounting)
@@ -93,20 +94,20 @@ class Simulator:
         Raises InputError when it is before or no time, SolverError when the events do not let time go on; the state is
         then that of the last event.
         """
-        return self._advance(to, self._set_out(to))
-
-    def step(self, to: Instant) -> tuple[list[Event], list[float]]:
-        """Bring the state to a time from the present one on, unchecked; return events and the numbers of a sample."""
-        if self._inputs.are_commanded:
-            self._solved.obey(self._waiting)
-        events, self._waiting = self._waiting, []
-        return self._advance(to, events), self._solved.row()
-
-    def _advance(self, to: Instant, events: list[Event]) -> list[Event]:
+        events = self._set_out(to)
         second, fraction = to
         if self._inputs.until <= second + fraction:
             self._solved.enter_pieces(second + fraction, events)
         self._solved.advance(to, events)
+        return self._counted(events)
+
+    def step(self, to: Instant) -> tuple[list[Event], SampleRow]:
+        """Bring the state to a time from the present one on, unchecked; return events and the record of a sample."""
+        events, self._waiting = self._waiting, []
+        row = self._solved.step(to, events)
+        return self._counted(events), row
+
+    def _counted(self, events: list[Event]) -> list[Event]:
         for event in events:
             self._counts[event.kind] += 1
         return events
@@ -119,9 +120,7 @@ class Simulator:
         """
         events = self._set_out(Instant(float(at.seconds[0]), float(at.fractions[0])))
         self._solved.take_samples(at, out, events if with_events else None)
-        for event in events:
-            self._counts[event.kind] += 1
-        return events
+        return self._counted(events)
 
     def skip(self, to: Instant) -> None:
         """Bring the state to a time under constant inputs; its events are neither returned nor counted.
@@ -145,10 +144,7 @@ class Simulator:
         self._inputs.command_force(force)
 
     def set_inputs(self, drive: Input, force: Input) -> None:
-        """Let both be in force from now on, as `command_drive` and `command_force`, but without their checks.
-
-        For the rig, which makes them of commands that were checked.
-        """
+        """Let both be in force from now on, as `command_drive` and `command_force`, but without their checks."""
         self._inputs.set(drive, force)
 
     def change_axis(self, axis: Axis) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..axis import Axis, InitialState, pack
+from ..axis.rows import SampleRow
 from ..core.errors import SolverError, UnsoundError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Instants
@@ -53,12 +54,13 @@ _KINDS, _MODES = tuple(EventKind), tuple(Mode)
 _MOVES = slice(4, 12)            # of a sample; the rest may be infinite
 _ROWS = 64                       # of the event table; it is emptied as often as it fills
 MAX_EVENTS_AT_ONCE = 100_000
+_NO_INPUTS = 0.0, 0.0, 0.0, 0.0
 _AT_ONCE = 0.01                  # s, in which so many events are more than any axis has
 
 
-def sample_of(row: list[float]) -> Sample:
+def sample_of(row: SampleRow) -> Sample:
     """Return the sample with these numbers."""
-    second, fraction, mode, direction, *rest = row
+    second, fraction, mode, direction, *rest = row.tolist()
     return tuple_of(Sample, (second, fraction, _MODES[int(mode)], int(direction), *rest))
 
 
@@ -135,14 +137,49 @@ class SolvedAxis:
 
     def obey(self, events: list[Event]) -> None:
         """Let the commands of this instant take effect, all at once: their order does not matter."""
-        inputs = self._inputs
-        if inputs.most_sinusoids:
+        if self._inputs.most_sinusoids:
             self._take_sinusoids()
-        second, fraction = self.time
-        rows = self._solver.set_inputs(self._parameters, self._state, second, fraction,
-                                       *inputs.enter(second + fraction), self._sinusoids, self._table, 0)
+        self._let(self._inputs.enter(self.time.seconds), events)
+
+    def _let(self, inputs: tuple[float, float, float, float], events: list[Event]) -> None:
+        """Let inputs be in force from the present time on."""
+        rows = self._solver.set_inputs(self._parameters, self._state, *self.time, *inputs, self._sinusoids,
+                                       self._table, 0)
+        events.extend(self._events(rows))
+
+    def step(self, to: Instant, events: list[Event]) -> SampleRow:
+        """Let the commands of this instant act and bring the state to a time, through pieces of the inputs.
+
+        Returns the record of a sample there, which the next step fills anew.
+        """
+        inputs, (before, rest), (second, fraction) = self._inputs, self.time, to
+        is_commanded, entered = inputs.are_commanded, _NO_INPUTS
+        if is_commanded:
+            if inputs.most_sinusoids:
+                self._take_sinusoids()
+            entered = inputs.enter(before + rest)
+        if self._step is None or inputs.until <= second + fraction:
+            if is_commanded:
+                self._let(entered, events)
+            if inputs.until <= second + fraction:
+                self.enter_pieces(second + fraction, events)
+            self.advance(to, events)
+            self._fill()
+            return self._row
+        rows, end = self._step(self._parameters, self._state, before, rest, second, fraction, is_commanded, *entered,
+                               self._sinusoids, self._table, self._row)
         if rows:
             events.extend(self._events(rows))
+        if end == DONE:
+            self.time = to
+            return self._row
+        if end != OUT_OF_RANGE:    # no number of the sample alone is so large
+            crowd = _Crowd(self.time)
+            self._check_end(end, rows, crowd)
+            self.advance(to, events, crowd)
+        self.time = to
+        self._fill()
+        return self._row
 
     def change(self, axis: Axis, events: list[Event]) -> None:
         """Go on with other parameters from the present time on."""
@@ -153,10 +190,9 @@ class SolvedAxis:
         rows = self._solver.set_parameters(old, self._parameters, self._state, *self.time, self._table, 0)
         events.extend(self._events(rows))
 
-    def advance(self, to: Instant, events: list[Event] | None) -> None:
-        """Bring the state to a time under the inputs that were entered."""
+    def advance(self, to: Instant, events: list[Event] | None, crowd: _Crowd | None = None) -> None:
+        """Bring the state to a time under the inputs that were entered; a `crowd` goes on from events before."""
         second, fraction = to
-        crowd = None
         while True:
             rows, end = self._solver.advance(self._parameters, self._state, second, fraction, self._table, 0)
             if rows and events is not None:
@@ -199,16 +235,14 @@ class SolvedAxis:
 
     def sample(self) -> Sample:
         """Return the state at the present time; raises SolverError when it is not finite."""
-        return sample_of(self.row())
+        self._fill()
+        return sample_of(self._row)
 
-    def row(self) -> list[float]:
-        """Return the numbers of `sample`."""
+    def _fill(self) -> None:
         second, fraction = self.time
         self._solver.sample(self._parameters, self._state, second, fraction, self._row)
-        row: list[float] = self._row.tolist()
-        if not math.isfinite(sum(row)) and not all(map(math.isfinite, row[_MOVES])):
+        if not all(map(math.isfinite, self._row.tolist()[_MOVES])):
             raise self._out_of_range(second + fraction)
-        return row
 
     def numbers(self) -> list[float]:
         """Return all numbers of the state."""
@@ -235,7 +269,7 @@ class SolvedAxis:
         if normal_force is not None:
             self._solver = under_load(self._solver, axis, normal_force)
             self._parameters.normal_force, self._parameters.normal_rate, _ = normal_force.pieces_at(self.time.seconds)
-        self._walk = walk_of(self._solver, normal_force)
+        self._walk, self._step = walk_of(self._solver, normal_force), self._solver.step
 
     def _take_sinusoids(self) -> None:
         """Let the sinusoids of the inputs in force be those that are entered from now on."""

@@ -94,6 +94,10 @@ class Solver(Protocol):
         """What says whether the state at a time obeys its mode and the balance of energy; None without an account."""
 
     @property
+    def step(self) -> Callable[..., tuple[int, int]] | None:
+        """What lets inputs be others, advances and samples in one call (`exact.engine.step`); None: these do."""
+
+    @property
     def walk(self) -> 'PieceWalk | None':
         """What goes through many pieces of the inputs in one call; None: `solvers.walk` does, by the methods above."""
 
@@ -126,6 +130,7 @@ class SolverOfFunctions(NamedTuple):
     walk: PieceWalk | None = None
     with_normal_force: 'Callable[[InputProfile], Solver] | None' = None
     bring: 'Callable[[Parameters, State, float, float], None] | None' = None
+    step: Callable[..., tuple[int, int]] | None = None
 
 
 def with_advance(solver: Solver, advance: Callable[..., tuple[int, int]]) -> Solver:

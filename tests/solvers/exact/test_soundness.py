@@ -37,7 +37,7 @@ def doctored(change: Doctor, mode: Mode | None = None) -> Solver:
             change(s)
         return rows, end
 
-    return exact.SOLVER._replace(advance=advance)
+    return exact.SOLVER._replace(advance=advance, step=None)
 
 
 def run_in_steps(axis: Axis, solver: Solver, end: float = 3.0) -> None:

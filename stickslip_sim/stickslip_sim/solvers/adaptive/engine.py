@@ -200,6 +200,7 @@ class Engine:
     energy: ClassVar[None] = None
     is_sound: ClassVar[None] = None
     walk: ClassVar[None] = None
+    step: ClassVar[None] = None
 
     def with_normal_force(self, normal_force: InputProfile) -> 'Engine':
         """Return the solver for a normal force that varies, N."""

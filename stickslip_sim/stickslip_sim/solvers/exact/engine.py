@@ -24,7 +24,7 @@ from ...axis.smooth_load import begin_load, normal_force_at, take_load
 from ...axis.state_record import State, clear_state
 from ...axis.transitions import apply_inputs, arrest, cross_breakpoint, leave_coast, release, turn
 from ...core.hot_path import compiled, inlined
-from .. import DONE, FULL, NO_PROGRESS, UNSOUND
+from .. import DONE, FULL, NO_PROGRESS, OUT_OF_RANGE, UNSOUND
 from ..stepping import is_stuck, write_sample
 from .search import STAMP, find_event
 from .series_events import RENEWAL
@@ -190,6 +190,24 @@ def sample(p: Parameters, s: State, second: float, fraction: float, out: SampleR
     if s.mode == YIELDING:
         out.deflection, _ = series_deflection(s, t)
     take_load(p, s)
+
+
+@compiled
+def step(p: Parameters, s: State, from_second: float, from_fraction: float, second: float, fraction: float,
+         is_commanded: bool, v: float, v_rate: float, f: float, f_rate: float, sinusoids: Sinusoids, events: Events,
+         out: SampleRow) -> tuple[int, int]:
+    """Advance from one time to another, where `is_commanded` under new inputs, and fill a row; return as `advance`."""
+    row = 0
+    if is_commanded:
+        row = set_inputs(p, s, from_second, from_fraction, v, v_rate, f, f_rate, sinusoids, events, row)
+    row, ended = advance(p, s, second, fraction, events, row)
+    if ended == DONE:
+        sample(p, s, second, fraction, out)
+        moves = (out.position + out.velocity + out.acceleration + out.drive + out.drive_velocity + out.drive_force
+                 + out.external + out.friction)
+        if moves - moves != 0.0:    # inf or nan
+            ended = OUT_OF_RANGE
+    return row, ended
 
 
 @compiled
