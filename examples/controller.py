@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A controller for the axis, to be replaced by yours: makes for 10 mm, with 10 mm/s at most."""
 
+import time
 from signal import SIGINT, SIGTERM, signal
 from threading import Event
 
@@ -28,8 +29,15 @@ class Controller(Node):
 
     def _answer(self, state: SliderState) -> None:
         self._silence.cancel()
+        self.get_logger().info('connected: the axis sends its states', once=True)
         velocity = 20.0 * (0.010 - state.position)    # m/s
         self._out.publish(DriveVelocity(velocity=min(max(velocity, -0.010), 0.010)))
+
+    def stop(self) -> None:
+        """Stop the drive; sent several times, as best effort may lose what is sent last."""
+        for _ in range(5):
+            self._out.publish(DriveVelocity(velocity=0.0))
+            time.sleep(0.02)
 
     def _complain(self) -> None:
         self._silence.cancel()
@@ -44,7 +52,8 @@ is_over = Event()
 for number in (SIGINT, SIGTERM):
     signal(number, lambda *_: is_over.set())
 rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
-executor = SingleThreadedExecutor()
-executor.add_node(Controller())
+executor, controller = SingleThreadedExecutor(), Controller()
+executor.add_node(controller)
 while not is_over.is_set():
     executor.spin_once(timeout_sec=0.1)
+controller.stop()

@@ -19,7 +19,7 @@ NAME = 'stickslip_sim'
 SHARE = f'share/{NAME}'
 # The programs beside the tool, which is the only entry point: pip puts each entry point of a wheel into `bin`, and a
 # wheel is the offline part.  colcon and the build farm call setup.py, with lib/stickslip_sim for programs (setup.cfg).
-NODES = ['cascade_controller', 'compensating_controller', 'health', 'replay_node', 'sim_node']
+NODES = ['cascade_controller', 'compensating_controller', 'controller_node', 'health', 'replay_node', 'sim_node']
 PROGRAM = """{python}
 import sys
 try:

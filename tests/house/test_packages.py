@@ -31,7 +31,8 @@ distributions:
     distribution_type: ros2
     python_version: 3
 """
-PROGRAMS = {'cascade_controller', 'compensating_controller', 'health', 'replay_node', 'sim_node', 'stickslip'}
+PROGRAMS = {'cascade_controller', 'compensating_controller', 'controller_node', 'health', 'replay_node', 'sim_node',
+            'stickslip'}
 INSTALLATIONS = {
     'colcon, with links': ['colcon', 'build', '--base-paths', '.', '--build-base', '../build',
                            '--install-base', '../install', '--symlink-install'],

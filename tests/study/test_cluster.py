@@ -199,21 +199,6 @@ def test_workers_and_a_scheduler_exclude_each_other(tmp_path: Path, capsys: Capt
     assert 'exclude each other' in capsys.readouterr().err
 
 
-def test_a_scheduler_that_goes_is_reported(shared_cluster: Cluster, tmp_path: Path) -> None:
-    """The last one that uses it."""
-    out = tmp_path / 'out'
-    shared_cluster.add_worker()
-    process = started('stickslip_sim', *LONG, '--scheduler', shared_cluster.address, '--out', out,
-                      DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT='1s')
-    wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
-    shared_cluster.scheduler.kill()
-    said, error = process.communicate(timeout=_PATIENCE)
-    assert process.returncode == 1
-    assert (said, error.count('\n')) == ('', 1), error
-    assert f'the scheduler {shared_cluster.address} is gone' in error
-    assert '--resume' in error
-
-
 def test_closed_loops_on_a_cluster_have_the_bytes_of_one_process(cluster: Cluster, tmp_path: Path) -> None:
     controller, limits = tmp_path / 'own.py', tmp_path / 'limits.yaml'
     controller.write_text('class Own:\n    def __init__(self, gain=5.0):\n        self.gain = gain\n'
@@ -228,3 +213,18 @@ def test_closed_loops_on_a_cluster_have_the_bytes_of_one_process(cluster: Cluste
     tables = [(tmp_path / name / POINTS_TABLE).read_bytes() for name in ('out', 'alone')]
     assert tables[0] == tables[1]
     assert tables[0].count(b'\n') >= 12
+
+
+def test_a_scheduler_that_goes_is_reported(shared_cluster: Cluster, tmp_path: Path) -> None:
+    """The last one that uses it."""
+    out = tmp_path / 'out'
+    shared_cluster.add_worker()
+    process = started('stickslip_sim', *LONG, '--scheduler', shared_cluster.address, '--out', out,
+                      DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT='1s')
+    wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
+    shared_cluster.scheduler.kill()
+    said, error = process.communicate(timeout=_PATIENCE)
+    assert process.returncode == 1
+    assert (said, error.count('\n')) == ('', 1), error
+    assert f'the scheduler {shared_cluster.address} is gone' in error
+    assert '--resume' in error

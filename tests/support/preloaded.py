@@ -15,8 +15,8 @@ from stickslip_sim.bags import topics
 from stickslip_sim.recording import flat_layout, schema
 from stickslip_sim.ros.node.endpoints import message_type
 
-for module in ('executables', 'programs', 'node.feed_axis', 'controllers.controller_node', 'replay.node',
-               'health_node'):
+for module in ('executables', 'programs', 'node.feed_axis', 'controllers.controller_node',
+               'controllers.own_controller_node', 'replay.node', 'health_node'):
     importlib.import_module(f'stickslip_sim.ros.{module}')
 for topic in topics.RECORDED:
     schema(topic.type)

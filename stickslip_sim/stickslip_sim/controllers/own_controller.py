@@ -67,6 +67,14 @@ class OwnController:
             except Exception as error:
                 raise ControllerError(f'{self.name}.reset() raised {raised(error)}; correct the controller') from None
 
+    def answer(self, measured: Measurement, step: int, time: float) -> Command:
+        """Ask it after a step; return its command.  Raises ControllerError."""
+        try:
+            answer = self.ask(time, measured)
+        except Exception as error:
+            self.failed(error, step, time)
+        return self.command(answer, step, time)
+
     def command(self, answer: object, step: int, time: float) -> Command:
         """Return the command that an answer is; raises ControllerError."""
         is_command = isinstance(answer, Command)

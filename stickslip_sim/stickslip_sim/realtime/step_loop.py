@@ -44,6 +44,7 @@ class StepLoop:
         self.by_request = by_request
         self.failure = ''                    # why the solver gave up; time stands still then
         self.crash: BaseException | None = None
+        self.latest: StepResult | None = None
         self.timing_statistics, self.pacing_counters = TimingStatistics(), clock.counters
         self._clock, self._sinks, self._watchdog = clock, sinks, watchdog
         self._inputs, self._hear = CommandInputs(slots), hear
@@ -131,8 +132,10 @@ class StepLoop:
                   ) -> list[StepResult]:
         """Make steps now, under commands (None: those in force), until `stop`; at a boundary only.
 
-        Returns what came of them; when the solver gives up on the way, `failure` says why.
+        Returns what came of them, of none the latest; when the solver gives up on the way, `failure` says why.
         """
+        if count == 0:
+            return [] if self.latest is None else [self.latest]
         self._hear()
         self._inputs.put((velocity, force), self._clock.now())
         results: list[StepResult] = []
@@ -186,7 +189,7 @@ class StepLoop:
             self._hear()
         new = self._inputs.take(self._clock.now())
         self._watch()
-        result = self.rig.make_step(new.velocity, new.force)
+        result = self.latest = self.rig.make_step(new.velocity, new.force)
         for take in self._sinks:
             take(result)
         end = self._clock.now()

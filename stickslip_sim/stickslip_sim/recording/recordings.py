@@ -23,9 +23,13 @@ from .run import RunFacts, checkpoint_file, open_run, receipt_file
 def stamped_folder(place: Path, name: str) -> Path:
     """Return the path of a folder that does not exist: `name` and the time of day, UTC to the second.
 
-    A number follows where that is taken: axes may start in the same second.
+    Axes may start in the same second.
     """
-    first = place / f'{name}_{time.strftime("%Y%m%dT%H%M%SZ", time.gmtime())}'
+    return _unused(place / f'{name}_{time.strftime("%Y%m%dT%H%M%SZ", time.gmtime())}')
+
+
+def _unused(first: Path) -> Path:
+    """Return a path, or where that is taken, the first with a number behind it that is not."""
     folder, number = first, 1
     while os.path.lexists(folder):
         number += 1
@@ -223,7 +227,8 @@ class Recordings:
         if not scene.record.folder:
             names = [*filter(None, self._namespace.split('/')), file_name(scene.name)]
             return stamped_folder(self._root, '_'.join(names))
-        return self.allowed(scene.record.folder)
+        folder = self.allowed(scene.record.folder)
+        return _unused(folder) if scene.record.each_reset else folder
 
     def allowed(self, folder: str) -> Path:
         """Return the folder of a recording; raises InputError when it lies elsewhere."""

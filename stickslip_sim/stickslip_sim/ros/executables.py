@@ -30,6 +30,14 @@ usage: health [--help] [--ros-args [-p patience:=S] [-r __ns:=/NAMESPACE]]
 Waits for what the axis in this namespace says of itself in /diagnostics, once a second.  Exit code 0: all is well, or
 there are warnings; 1: there is an error, or it says nothing.
 """
+_CONTROLLER_NODE = """\
+usage: controller_node [--help] --controller FILE.py:NAME [--gain NAME=VALUE]... [--setpoint FILE.csv] [--rate HZ]
+                       [--duration S] [--ros-args [-r __ns:=/NAMESPACE]]
+
+Lets a controller of yours drive the axis in this namespace (node own_controller): the same as with stickslip
+close-loop, in real time, or with time.mode lockstep in steps that it makes itself, from a reset on.  The axis needs
+joint_interface.enabled:=true.  At the end it stops the drive: after --duration, on Ctrl-C, when the controller fails.
+"""
 _CONTROLLER = """\
 usage: {0} [--help] [--ros-args [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]
 
@@ -91,6 +99,19 @@ def compensating_controller(args: Sequence[str] | None = None) -> int:
     return _controller('compensating_controller', what, True, args)
 
 
+def controller_node(args: Sequence[str] | None = None) -> int:
+    """Run a controller of the user; return the exit code: 0 ended, 1 internal error or no axis, 2 refused or failed."""
+    def run(given: 'GivenParameters', signals: Signals) -> None:
+        from .controllers.own_controller_node import OwnControllerNode
+        from .programs import spin
+
+        node = OwnControllerNode(given, lambda: signals.stop)
+        spin(node, signals, node.turn)
+
+    options = '--controller', '--gain', '--setpoint', '--rate', '--duration'
+    return _live('controller_node', _CONTROLLER_NODE, run, args, options)
+
+
 def _controller(name: str, what: str, compensates: bool, args: Sequence[str] | None) -> int:
     def run(given: 'GivenParameters', signals: Signals) -> None:
         from .controllers.controller_node import ControllerNode
@@ -101,8 +122,9 @@ def _controller(name: str, what: str, compensates: bool, args: Sequence[str] | N
     return _live(name, _CONTROLLER.format(name, what), run, args)
 
 
-def _live(name: str, usage: str, run: 'Callable[[GivenParameters, Signals], None]', args: Sequence[str] | None) -> int:
+def _live(name: str, usage: str, run: 'Callable[[GivenParameters, Signals], None]', args: Sequence[str] | None,
+          options: Sequence[str] = ()) -> int:
     signals = Signals()
     from .programs import Program, live
 
-    return live(sys.argv[1:] if args is None else args, signals, Program(name, usage, run))
+    return live(sys.argv[1:] if args is None else args, signals, Program(name, usage, run, options))

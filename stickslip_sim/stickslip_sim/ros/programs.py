@@ -21,11 +21,15 @@ SWITCH_INTERVAL = 5e-5    # s that another thread may keep the interpreter from 
 
 
 class Program(NamedTuple):
-    """An executable; `run` runs its node with the parameters of the command line."""
+    """An executable; `run` runs its node with what the command line gives it.
+
+    It takes `options` before --ros-args, each with a value.
+    """
 
     name: str
     usage: str
     run: Callable[['GivenParameters', 'Signals'], None]
+    options: Sequence[str] = ()
 
 
 def live(args: Sequence[str], signals: 'Signals', program: Program) -> int:
@@ -91,27 +95,38 @@ def _with_ros(args: Sequence[str], signals: 'Signals', program: Program) -> None
     given = GivenParameters.read(args)    # before ROS, whose parser takes minutes for some files
     try:
         _init_ros(args)
-        if _wants_help(args, program):
+        options = _options_of(args, program)
+        if options is None:
             sys.stdout.write(program.usage)
         else:
-            program.run(given, signals)
+            program.run(given._replace(options=options), signals)
     except ExternalShutdownException:
         pass
     finally:
         rclpy.try_shutdown()
 
 
-def _wants_help(args: Sequence[str], program: Program) -> bool:
-    """Return whether help is asked for; raises InputError on words that are none of ROS's."""
+def _options_of(args: Sequence[str], program: Program) -> list[tuple[str, str]] | None:
+    """Return the options of a program, None when help is asked for; raises InputError on words that are none."""
     from rclpy.utilities import remove_ros_args
 
     for word in takewhile(lambda word: word != '--ros-args', args):
         if ':=' in word:    # ROS takes it for a name to be replaced, and the node starts without it
             raise InputError('argument', word, 'behind --ros-args -p', f'{program.name} --ros-args -p {word}')
     words = remove_ros_args([program.name, *args])[1:]
-    if words and words[0] not in ('-h', '--help'):
-        raise InputError('argument', words[0], 'one of -h, --help, or behind --ros-args', f'see {program.name} --help')
-    return bool(words)
+    options: list[tuple[str, str]] = []
+    while words:
+        word = words.pop(0)
+        name, equals, value = word.partition('=')
+        if word in ('-h', '--help'):
+            return None
+        if name not in program.options:
+            raise InputError('argument', word, f'one of {", ".join(("-h", "--help", *program.options))}, or behind '
+                             '--ros-args', f'see {program.name} --help')
+        if not equals and not words:
+            raise InputError(name, None, 'followed by its value', f'see {program.name} --help')
+        options.append((name, value if equals else words.pop(0)))
+    return options
 
 
 def _init_ros(args: Sequence[str]) -> None:
@@ -164,10 +179,14 @@ class NodeParameters(NamedTuple):
 
 
 class GivenParameters(NamedTuple):
-    """All parameters of a command line, for any nodes; each of the single ones is a section."""
+    """All parameters of a command line, for any nodes; each of the single ones is a section.
+
+    `options` are those of the program itself.
+    """
 
     files: Sequence[ParameterFile] = ()
     single: Sequence[Section] = ()
+    options: Sequence[tuple[str, str]] = ()
 
     @classmethod
     def read(cls, args: Sequence[str]) -> 'GivenParameters':

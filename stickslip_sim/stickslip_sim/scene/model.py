@@ -133,7 +133,7 @@ class RecordSettings:
     """Whether the node records from its start, and into which folder (empty: it chooses one).
 
     It goes on in another file at `max_size` bytes, or after `max_duration` s.  Its log times are simulation time, or
-    those of the wall clock (`log_time`: simulation or wall).
+    those of the wall clock (`log_time`: simulation or wall).  With `each_reset` every reset begins a bag.
     """
 
     enabled: bool
@@ -141,6 +141,7 @@ class RecordSettings:
     max_size: int | None = None
     max_duration: float | None = None
     log_time: str = 'simulation'
+    each_reset: bool = False
 
 
 class ProfileSource(NamedTuple):

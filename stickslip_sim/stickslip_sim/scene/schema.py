@@ -352,6 +352,8 @@ PARAMETERS: tuple[Parameter, ...] = (
               ' with ros2 bag record --max-bag-duration; left out: one file', 1.0, MAX_TIME),
     Parameter('record.log_time', 'string', None, '', 'log times of the bag: simulation, from 0 on, or wall, the stamps,'
               ' as in bags of ros2 bag record; left out: simulation', choices=_LOG_TIMES),
+    Parameter('record.each_reset', 'bool', None, '', 'whether each ~/reset begins a new bag, and ends the one that is'
+              ' recorded into; where record.folder exists, a number follows it; left out: false'),
 
     Parameter('seed', 'integer', 0, '', 'seed of all random numbers of the run', 0, 2**63 - 1),
 )

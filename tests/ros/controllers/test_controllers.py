@@ -19,7 +19,7 @@ from sensor_msgs.msg import JointState
 
 from benchmarks.closed_loop import close_loop
 from benchmarks.controllers import controllers
-from stickslip_msgs.srv import Step
+from stickslip_msgs.srv import InjectFault, Step
 from stickslip_sim.controllers import Moves
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
@@ -28,8 +28,9 @@ from stickslip_sim.ros.controllers.controller_node import measurement
 from stickslip_sim.ros.node.joints import JointNames
 from stickslip_sim.scene.values import scene_text
 from tests.support.busy_machine import judged_by_time
-from tests.support.forked_programs import refusal_of
+from tests.support.forked_programs import ForkedProgram, refusal_of
 from tests.support.node_processes import assert_clean, executable, running
+from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client, live_axis
 from tests.support.tool import Capture, answered
 from tests.support.waiting import DEADLINE, wait_for
@@ -62,6 +63,43 @@ class TestRefusedStart:
         done = subprocess.run([executable(program), '--help'], capture_output=True, text=True, timeout=60, check=False)
         assert (done.returncode, done.stderr) == (0, '')
         assert done.stdout.startswith(f'usage: {program} ')
+
+
+OWN = str(ROOT / 'tests/support/own_controllers.py')
+
+
+@pytest.mark.parametrize(('words', 'reported'), [
+    ((), '--controller is missing: must be FILE.py:NAME'),
+    (('--controller',), '--controller is missing: must be followed by its value'),
+    (('--ctrl', f'{OWN}:Cascade'), "argument = '--ctrl' is refused"),
+    (('--controller', f'{OWN}:Cascada'), 'did you mean Cascade?'),
+    (('--controller', f'{OWN}:Cascade', '--gain', 'kp=3'), 'Cascade(kp=3)'),
+    (('--controller', f'{OWN}:Cascade', '--rate=fast'), "--rate = 'fast' is refused: must be a number"),
+    (('--controller', f'{OWN}:Cascade', '--setpoint', 'move.csv'), '--duration is missing'),
+])
+def test_a_controller_of_the_user_that_is_refused(words: tuple[str, ...], reported: str) -> None:
+    process = ForkedProgram('controller_node', *words)
+    _, errors = process.communicate(DEADLINE)
+    line, = errors.splitlines()
+    assert (process.poll(), line.startswith('controller_node: ')) == (2, True)
+    assert reported in line
+
+
+def test_one_that_fails_in_real_time_stops_the_drive(tmp_path: Path) -> None:
+    """Though no measurement comes any more: it is asked with each step, and says so."""
+    (tmp_path / 'mine.py').write_text("""def fails(t, measured):
+    if measured.is_lost:
+        raise RuntimeError('lost')
+    return 0.002
+""")
+    with live_axis(*BENCH) as (_, axis):
+        process = ForkedProgram('controller_node', '--controller', f'{tmp_path}/mine.py:fails')
+        axis.next('slider_state', lambda state: state.drive_velocity == 0.002)
+        assert axis.call(InjectFault, 'inject_fault', kind='encoder_dropout', duration=10.0, value=1.0).success
+        _, errors = process.communicate(DEADLINE)
+        assert process.poll() == 2
+        assert 'controller_node: fails raised RuntimeError: lost (mine.py, line 3), asked after step ' in errors
+        axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
 
 
 def log_lines(listener: Client) -> list[str]:

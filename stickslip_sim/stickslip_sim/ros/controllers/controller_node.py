@@ -8,7 +8,7 @@ and as fast as possible alike, with `use_sim_time` or without.
 
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from rclpy.clock import Clock, ClockType
@@ -111,11 +111,9 @@ class ControllerNode(ListedNode):
         self.get_logger().info(f'moves of {moves.travel:g} m at {moves.peak:g} m/s, with the first {JOINT_STATES.name}')
 
     def end(self) -> None:
-        """Let the drive stop, if it was moved; said several times, for best effort may lose what is said last."""
+        """Let the drive stop, if it was moved."""
         if self._progress is not None:
-            for _ in range(_STOPS):
-                self._send(0.0)
-                time.sleep(_STOP_PAUSE)
+            repeatedly(lambda: self._send(0.0))
 
     def values_changed(self) -> None:
         """Go on with other gains."""
@@ -159,6 +157,13 @@ class ControllerNode(ListedNode):
             log.warning(f'{self._limited} commands held back by max_velocity'
                         f' ({self._following.controller.max_velocity:g} m/s)')
         self._heard = self._refused = self._limited = 0
+
+
+def repeatedly(send: Callable[[], None]) -> None:
+    """Send several times: best effort may lose what is sent last."""
+    for _ in range(_STOPS):
+        send()
+        time.sleep(_STOP_PAUSE)
 
 
 def measurement(message: JointState, names: JointNames) -> Measured:

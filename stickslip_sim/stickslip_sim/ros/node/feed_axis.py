@@ -149,7 +149,8 @@ class FeedAxis(HidingNode, SceneNode):
             self.loop.restart()
             self._begin_run()
 
-        done = self.loop.at_boundary(restart)
+        bags = self._record_service
+        done = self.loop.at_boundary(lambda: bags.renew(restart) if self.scene.record.each_reset else restart())
         if done:
             self._report.forget_counts()
             self._cost.begin()

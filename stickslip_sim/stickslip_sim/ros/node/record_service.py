@@ -55,6 +55,25 @@ class RecordService:
         self._log_begin()
         return ''
 
+    def renew(self, restart: Callable[[], None]) -> None:
+        """Restart with a bag of its own, after the one that is recorded into; at a boundary only.
+
+        Time stands still meanwhile.  A bag that cannot be written is logged, and there is none then.
+        """
+        self._publishers.recorder = None
+        log = self._node.get_logger()
+        try:
+            if folder := self.recordings.folder:
+                self.recordings.end(self._receipt())
+                log.info(f'recorded into {folder}')
+            self.recordings.begin(self._node.scene)
+        except RecordingError as error:
+            log.error(f'no recording: {error}')
+        restart()
+        if self.is_recording:
+            self._attach()
+            self._log_begin()
+
     def end(self) -> str:
         """End the recording; return why the bag could not be finished, or an empty text."""
         receipts: list[dict[str, Any]] = []

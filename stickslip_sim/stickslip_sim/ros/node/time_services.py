@@ -34,27 +34,33 @@ _STEPPING = 3600.0   # s that many steps may take
 
 
 class TimeServices:
-    """`restart` begins a new run at a boundary; `is_recording` and `is_stopping` are asked when it matters."""
+    """`restart` begins a new run at a boundary; `is_recording` and `is_stopping` are asked when it matters.
+
+    With `record.each_reset` it begins a bag, too.
+    """
 
     def __init__(self, node: SceneNode, loop: StepLoop, publishers: Publishers, restart: Callable[[], bool],
                  is_recording: Callable[[], bool], is_stopping: Callable[[], bool]) -> None:
         self._loop, self._publishers, self._restart = loop, publishers, restart
         self._is_recording, self._is_stopping = is_recording, is_stopping
+        self._has_bags = node.scene.record.each_reset
         self._profiles, self._log = (node.scene.drive, node.scene.force), node.get_logger()
         node.create_service(Trigger, '~/reset', self.reset)
         node.create_service(SetBool, '~/set_paused', self.set_paused)
         node.create_service(Step, '~/step', self.step)
 
     def reset(self, _: Any, response: Any) -> Any:
-        """Begin anew at simulation time 0; a bag would then hold two runs, so not while recording.
+        """Begin anew at simulation time 0; a bag would then hold two runs, so not while recording into only one.
 
         A recorded run that has not begun is what it would be after a reset.
         """
         if self._is_recording():
             if self._is_before_start:
                 return answer(response, True, 'simulation time and steps are at 0; the recording goes on')
-            return answer(response, False, 'refused while recording: a bag holds one run; end it with ~/record first'
-                          ' (stickslip call record off)')
+            if not self._has_bags:
+                return answer(response, False, 'refused while recording: a bag holds one run; end it with ~/record'
+                              ' first (stickslip call record off), or let each reset begin another'
+                              ' (record.each_reset)')
         done = self._restart()
         return self._logged(response, done, 'simulation time and steps begin anew at 0')
 
@@ -85,12 +91,16 @@ class TimeServices:
         if results:
             last = results[-1]
             response.state, response.friction = self._publishers.state_messages(last.step, last.sample)
-            response.events = [message for result in results for event in result.events
+            response.events = [message for result in results[:request.steps] for event in result.events
                                if (message := self._publishers.event_message(result.step, event))]
+            for name, value in last.measured._asdict().items() if last.measured else ():
+                setattr(response, f'measured_{name}', value)
+            response.is_measured = last.measured is not None
         if replaced and results:
             self._log.warning(f'~/step: {replaced}')
-        return answer(response, done and len(results) == request.steps,
-                      self._report(done, request.steps, len(results)) + (f'; {replaced}' if replaced else ''))
+        made = min(len(results), request.steps)
+        return answer(response, done and made == request.steps,
+                      self._report(done, request.steps, made) + (f'; {replaced}' if replaced else ''))
 
     def _logged(self, response: Any, done: bool, text: str) -> Any:
         """Answer, and tell in the log what was done."""
@@ -108,7 +118,8 @@ class TimeServices:
     def _refusal(self, request: Any) -> str:
         """Return why steps are not made, or an empty text."""
         loop = self._loop
-        if not 1 <= request.steps <= Step.Request.MAX_STEPS:
+        least = 0 if math.isnan(request.velocity) and math.isnan(request.force) else 1
+        if not least <= request.steps <= Step.Request.MAX_STEPS:
             return f'steps = {request.steps} is refused: must be 1 to {Step.Request.MAX_STEPS}; call it again for more'
         for slot, value in zip(loop.slots, (request.velocity, request.force)):
             if not math.isnan(value) and (refusal := slot.refusal(value)):
@@ -246,7 +257,9 @@ class StandardServices:
         return response
 
     def _step(self, request: Any, response: Any) -> Any:
-        wanted = Step.Request(steps=min(request.steps, _MOST), velocity=math.nan, force=math.nan)
+        refused = 0.0    # the standard has no 0 steps, with which ~/step only answers
+        wanted = Step.Request(steps=min(request.steps, _MOST), force=math.nan,
+                              velocity=math.nan if request.steps else refused)
         response.result = self._done(self._times.step(wanted, Step.Response()))
         return response
 
