@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from .figures.cycles import Cycle, Summary
     from .identification.identify import identify
     from .inputs import load_scene
+    from .inputs.measurement import Measurement
     from .inputs.scene_files import simulate, simulate_events
     from .recording import read_run
     from .runs import Run
@@ -44,11 +45,11 @@ if TYPE_CHECKING:
     from .study.in_memory import critical, sweep, uncertainty
 
 __all__ = [
-    'Command', 'ControllerError', 'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Mode', 'RecordingError',
-    'RecordingWarning', 'Run', 'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError', 'StickslipError',
-    'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'close_loops', 'critical',
-    'error_estimate', 'identify', 'load_scene', 'plot_runs', 'read_run', 'run_batch', 'scene_names', 'sensitivities',
-    'simulate', 'simulate_events', 'sweep', 'tune', 'uncertainty',
+    'Command', 'ControllerError', 'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Measurement', 'Mode',
+    'RecordingError', 'RecordingWarning', 'Run', 'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError',
+    'StickslipError', 'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'close_loops',
+    'critical', 'error_estimate', 'identify', 'load_scene', 'plot_runs', 'read_run', 'run_batch', 'scene_names',
+    'sensitivities', 'simulate', 'simulate_events', 'sweep', 'tune', 'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
@@ -62,6 +63,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.figures.cycles': ('Cycle', 'Summary'),
         '.identification.identify': ('identify',),
         '.inputs': ('load_scene',),
+        '.inputs.measurement': ('Measurement',),
         '.inputs.scene_files': ('simulate', 'simulate_events'),
         '.recording': ('read_run',),
         '.runs': ('Run',),

@@ -14,7 +14,7 @@ from benchmarks.identify.outcomes import Outcome, ParameterOutcome, load, models
 from benchmarks.identify.page import of_every_kind
 from benchmarks.identify.varied import FEEDS, SENSORS, kind_of, varied_axes
 from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE
-from stickslip_sim.inputs.measurement import load_measurement
+from stickslip_sim.inputs.measurement import Measurement
 from stickslip_sim.runs import simulate
 from stickslip_sim.study.uncertainty import uncertain_of
 
@@ -56,7 +56,7 @@ def test_sensors_count_in_steps_and_have_noise(tmp_path: Path, few: list[Synthet
     assert noise.std() / np.sqrt(np.mean(true['drive_force']**2)) == pytest.approx(0.01, rel=0.1)
     shown.write_csv(tmp_path / 'axis.csv')
     names = {name: name for name in ('time', 'position', 'drive_force')}
-    read = load_measurement(tmp_path / 'axis.csv', names, {})
+    read = Measurement.from_file(tmp_path / 'axis.csv', names, {})
     assert (read.times == shown.times).all()
     assert all((read.columns[name] == shown.columns[name]).all() for name in shown.columns)
 

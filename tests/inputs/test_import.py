@@ -11,11 +11,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.io import savemat
 
 import stickslip_sim as stickslip
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.core.types import EventKind
+from stickslip_sim.identification.readings import readings_of
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.inputs.csv_table import Rows
 from stickslip_sim.recording import MeasuredRun, open_bag, read_run
 from stickslip_sim.runs import SimulatedRun, simulate
 from stickslip_sim.scene import Scene
@@ -132,7 +135,7 @@ def test_topics_of_a_bag(tmp_path: Path, capsys: Capture) -> None:
     ('time=t,speed=v', '', "'speed=v' is refused: must be QUANTITY=NAME"),
     ('time=t,position=x,position=v', '', 'each quantity once'),
     ('time=t,position=x', 'velocity=mm/s', 'of a quantity in --columns'),
-    ('time=t,position=x', 'position=mm', "--unit = 's' is refused: must be ms, as the heading says: t [ms]"),
+    ('time=t,position=x', 'time=s,position=mm', "--unit = 's' is refused: must be ms, as the heading says: t [ms]"),
     ('time=t,position=x', 'time=ms,position=mile', 'must be one of m, mm, um, nm, cm, in'),
     ('time=v,position=x', '', 'axis.csv line 3 = 0.0 is refused: must be a time after the one before it'),
 ])
@@ -313,3 +316,127 @@ def test_a_name_is_the_scene_that_it_loads() -> None:
     assert run_of(stickslip.simulate_events('paper_fig7', 2.0)) == run_of(expected)
     with pytest.raises(stickslip.InputError, match='did you mean paper_fig'):
         stickslip.simulate_events('paper_fig9', 2.0)
+
+
+# Exports as they come: what controllers, oscilloscopes and spreadsheets write around the numbers.
+
+ROWS = [(k, 0.5 * k * k, 100.0 + k) for k in range(6)]        # ms, mm, N
+
+
+def comma(value: float) -> str:
+    return f'{value:.3f}'.replace('.', ',')
+
+
+def lines(pattern: str, *values: Callable[[float], str]) -> str:
+    return ''.join(pattern.format(*(f(v) for f, v in zip(values, row))) for row in ROWS)
+
+
+EXPORTS = {
+    'twincat': ('Name\tScope01\nStartRecord\t128783093223690000\n\nName\tPos\tName\tF\nPort\t801\tPort\t801\n\n'
+                + lines('{0}\t{1}\t{0}\t{2}\n', str, comma, comma) + 'EOF\n',
+                'time=1,position=Pos,drive_force=F', 'time=ms,position=mm'),
+    'siemens': ('\ufeff"Trace";"Axis"\r\n"t";"x";"x";"F";"Mode"\r\n"ms";"mm";"mm";"N";""\r\n'
+                + lines('{0};{1};{1};{2};"AUTO"\r\n', str, comma, comma) + '//END\r\n',
+                'time=t,position=3,drive_force=F', ''),
+    'labview': ('LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\nChannels\t2\nDelta_X\t0,001\t0,001\n'
+                '***End_of_Header***\nX_Value\tx\tF\tComment\n' + lines('{}\t{}\t{}\n', str, comma, comma),
+                'time=X_Value,position=x,drive_force=F', 'time=ms,position=mm'),
+    'tektronix': ('Record Length,2500,,0,0,100\n' + lines(',,,{},{},{}\n', str, str, str).split('\n', 1)[1],
+                  'time=4,position=5,drive_force=6', 'time=ms,position=mm'),
+    'lecroy': ('LECROY,1,Waveform\nSegments,1,SegmentSize,3\n#1,21-Apr-2018,0\nTime [ms],x_mm,F\n'
+               + lines('{},{},{}\n', str, str, str), 'time=Time,position=x_mm,drive_force=F', ''),
+    'excel': ('Prüfstand;Müller\n\nZeit [ms];;Kraft [N]\n' + lines('{};{};{}\n', str, comma, comma),
+              'time=Zeit,position=2,drive_force=Kraft', 'position=mm'),
+}
+
+
+@pytest.mark.parametrize('name', EXPORTS)
+def test_an_export_as_it_comes(name: str, tmp_path: Path, capsys: Capture) -> None:
+    text, columns, units = EXPORTS[name]
+    path = tmp_path / f'{name}.csv'
+    path.write_bytes(text.encode('latin-1' if name == 'excel' else 'utf-8'))
+    unit = ('--unit', units) if units else ()
+    code, out, err = answered(capsys, 'import', path, '--columns', columns, *unit, '--out', tmp_path / 'run')
+    assert (code, err) == (0, '')
+    assert ('units of the headings' in out) == (name in ('siemens', 'lecroy', 'excel'))
+    samples = read_run(tmp_path / 'run').samples
+    expected = np.array(ROWS).T * [[1e-3], [1e-3], [1.0]]
+    found = [samples[name] for name in ('time', 'position', 'drive_force')]
+    np.testing.assert_allclose(found, expected, rtol=1e-14)
+
+
+@pytest.mark.parametrize(('rows', 'options', 'hint'), [
+    ('t,x\n0,0\n1,---\n2,1\n', (), "bad.csv line 3 = '---' is refused: must be a finite number in column 2, x"),
+    ('t,x\n0,0\n1,1\n1,2\n', (), 'bad.csv line 4 = 1.0 is refused: must be a time after the one before it, 1.0 s'),
+    ('t,n [rpm]\n0,0\n1,1\n', ('velocity=n',), "--unit = '[rpm]' is refused: must be one of m/s, cm/s, mm/s"),
+    ('t,x [V]\n0,0\n1,1\n', (), "--unit = '[V]' is refused"),
+    ('t,x\n0,0\n1,1\n', ('', '--lead', '10'), "--lead = '10' is refused: must be a number with its unit"),
+    ('t,x\n0,0\n1,1\n', ('', '--from', '5'), 'there are none'),
+    ('t,x,x\n0,0,0\n1,1,1\n', (), '2 columns have this name; take its number, 2 or 3'),
+    ('PK\0\0', (), 'a workbook: save it as CSV'),
+])
+def test_a_bad_export_is_refused_in_one_line(rows: str, options: tuple[str, ...], hint: str, tmp_path: Path,
+                                             capsys: Capture) -> None:
+    path = tmp_path / 'bad.csv'
+    path.write_text(rows)
+    quantity, *more = options or ('',)
+    assert hint in refused(capsys, 'import', path, '--columns', f'time=t,{quantity or "position=x"}', *more, '--out',
+                           tmp_path / 'run')
+
+
+def test_rows_are_chosen_and_bad_ones_counted(tmp_path: Path) -> None:
+    """In blocks that are halved down to the bad line, too; one without a time counts wherever it is."""
+    rows = [f'{k},{k * 1e-5!r}' for k in range(1000)]
+    rows[300], rows[700], rows[800] = '300,', '699,1', 'nan,1'
+    path = tmp_path / 'long.csv'
+    path.write_text('1,2\n3,4\nt [ms],x\n' + '\n'.join(rows))
+    taken = Rows(begin=0.2, end=0.75, every=10, skip=2, drops_bad=True)
+    found = stickslip.Measurement.from_file(path, {'time': 't', 'position': 'x'}, rows=taken)
+    wanted = [k for k in range(200, 751, 10) if k not in (300, 700)]
+    np.testing.assert_allclose(found.times, np.array(wanted) / 1e3, rtol=1e-15)
+    np.testing.assert_allclose(found.columns['position'], np.array(wanted) * 1e-5, rtol=1e-15)
+    assert '3 bad rows are left out' in found.remarks
+
+
+def test_arrays_frames_and_other_files(tmp_path: Path) -> None:
+    time, position = np.arange(5.0), np.arange(5.0) ** 2
+    from_arrays = stickslip.Measurement.from_arrays(time=time, position=position,
+                                                    units={'time': 'ms', 'position': 'mm'})
+    assert repr(from_arrays) == '<Measurement: 5 rows, 0 to 0.004 s: position>'
+    savemat(tmp_path / 'run.mat', {'run': {'t': time, 'x': position}, 'M': np.column_stack([position, time])})
+    from_file = stickslip.Measurement.from_file(tmp_path / 'run.mat', {'time': 'run.t', 'position': 'M[1]'},
+                                                {'time': 'ms', 'position': 'mm'})
+    from_frame = stickslip.Measurement.from_frame({'t [ms]': time, 'x [mm]': position},
+                                                  {'time': 't', 'position': 'x'})
+    for one in (from_arrays, from_file, from_frame):
+        assert one.times.tolist() == [0.0, 0.001, 0.002, 0.003, 0.004]
+        assert one.columns['position'].tolist() == [0.0, 0.001, 0.004, 0.009, 0.016]
+    from_arrays.write(tmp_path / 'run')
+    assert read_run(tmp_path / 'run').samples['position'][4] == 0.016
+    with pytest.raises(stickslip.InputError, match='frame row 2 = nan is refused: must be a finite number in column x'):
+        stickslip.Measurement.from_frame({'t': [0.0, 1.0], 'x': [0.0, math.nan]}, {'time': 't', 'position': 'x'})
+
+
+def test_a_turning_axis_has_a_lead(tmp_path: Path) -> None:
+    """10 mm a turn: 600 rpm are 0.1 m/s, and 1 N m moves with 628 N."""
+    found = stickslip.Measurement.from_frame({'t': [0.0, 1.0], 'n [rpm]': [0.0, 600.0], 'M [Nm]': [0.0, 1.0]},
+                                             {'time': 't', 'velocity': 'n', 'drive_force': 'M'}, lead='10 mm')
+    assert found.columns['velocity'][1] == pytest.approx(0.1, rel=1e-15)
+    assert found.columns['drive_force'][1] == pytest.approx(200.0 * math.pi, rel=1e-15)
+
+
+def test_a_force_alone_has_the_position_of_its_spring(simulated: SimulatedRun, tmp_path: Path) -> None:
+    """That of an axis whose drive has no damping; identify takes the position, and not the force again."""
+    run = simulate(simulated.scene, 2.0, 0.001)
+    scene, samples = run.scene, run.samples
+    force = scene.axis.drive_stiffness * (samples['drive_position'] - samples['position'])
+    measured = stickslip.Measurement.from_arrays(time=samples['time'], drive_force=force)
+    with pytest.raises(stickslip.InputError, match='with a position or a velocity of the slider'):
+        measured.write(tmp_path / 'none')
+    derived = measured.with_spring(scene.axis.drive_stiffness, samples['drive_position'][-1] / 2.0)
+    np.testing.assert_allclose(derived.columns['position'], samples['position'], atol=1e-12)
+    derived.write(tmp_path / 'run')
+    found = read_run(tmp_path / 'run')
+    assert isinstance(found, MeasuredRun)
+    assert 'the position is derived, not measured: x = v t - F/k' in found.notes[-1]
+    assert [one.name for one in readings_of(found, scene, {}).channels] == ['position']

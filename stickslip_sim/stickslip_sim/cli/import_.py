@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip import`: a measured run as a run folder."""
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,21 +16,30 @@ if TYPE_CHECKING:
     from ..recording import MeasuredRun
 
 _NOISES = 2.0   # standard deviations, of the velocity
+_TELLING = 10**6   # samples that say it
 _ABOVE = 1.5    # of the noise: a threshold that it does not reach
 
 
-@verb('import', short_help='Make a run folder of a measurement, from a CSV file or a bag.')
-@click.argument('data', metavar='DATA.csv|BAG')
+@verb('import', short_help='Make a run folder of a measurement, from a file or a bag.')
+@click.argument('data', metavar='DATA|BAG')
 @click.option('--columns', multiple=True, required=True, metavar='time=T,position=X,...',
-              help='The column of each quantity; of a bag TOPIC:FIELD, as joint_states:position[0].')
+              help='The column of each quantity, by name or number, or `row`; of a bag as joint_states:position[0].')
 @click.option('--unit', multiple=True, metavar='position=mm,...',
-              help='Units of the columns [default: SI], with a factor if need be: position="-0.05 um".')
+              help='Units [default: of the headings, or SI], with a factor if need be: position="-0.05 um".')
+@click.option('--lead', metavar='"10 MM"', help='Way of a turn, which converts rpm, rad/s, deg and N m.')
+@click.option('--stiffness', metavar='"600 N/MM"', help='The spring by whose force the slider is pulled: x = s - F/k.')
+@click.option('--feed', metavar='"2 MM/S"', help='Velocity of the driven end of that spring.')
+@click.option('--from', 'begin', type=float, default=-math.inf, metavar='S', help='Time of the file to begin at.')
+@click.option('--to', 'end', type=float, default=math.inf, metavar='S', help='Time of the file to end at.')
+@click.option('--every', type=click.IntRange(1), default=1, metavar='N', help='Take each Nth row.')
+@click.option('--skip', type=click.IntRange(0), default=0, metavar='LINES', help='Pass over the first lines.')
+@click.option('--drop-bad-rows', 'drops_bad', is_flag=True, help='Leave out rows that lack a number or go back.')
 @click.option('--stick-velocity', type=float, metavar='V',
               help='A slip is faster than this, m/s, and at its peak than 5 times it [default: 5 % of the highest].')
 @click.option('--meant', multiple=True, metavar='QUANTITY', help='It is meant as it was read, however fast or far.')
 @click.option('--out', type=FOLDER, required=True, metavar='RUN_FOLDER', help='New folder of the run.')
-def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], stick_velocity: float | None,
-            meant: tuple[str, ...], out: str) -> None:
+def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], lead: str | None, stiffness: str | None,
+            feed: str | None, stick_velocity: float | None, meant: tuple[str, ...], out: str, **rows: Any) -> None:
     """Make a run folder of what was measured, for identify, compare, plot, export and check.
 
     There is nothing else in it.  The quantities are time, position, velocity and acceleration of the slider,
@@ -38,28 +48,40 @@ def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], stick_ve
     """
     from ..core.errors import InputError
     from ..figures.wording import headline
-    from ..inputs.measurement import COLUMNS_OPTION, UNIT_OPTION, check_plausible_motion, load_measurement, pairs_of
-    from ..recording import MeasuredRun, read_run, write_measured
+    from ..inputs.csv_table import SPEEDS, STIFFNESSES, Rows
+    from ..inputs.measurement import (
+        COLUMNS_OPTION,
+        UNIT_OPTION,
+        Measurement,
+        check_plausible_motion,
+        pairs_of,
+        stated,
+    )
+    from ..recording import MeasuredRun, read_run
     from ..report.model import NOTE, Section, Sentence
 
     if stick_velocity is not None and not 0.0 < stick_velocity < 1e6:
         raise InputError('--stick-velocity', stick_velocity, '> 0 and < 1e6 m/s', '0.1 mm/s is 1e-4')
     named = pairs_of(COLUMNS_OPTION, columns)
     units = pairs_of(UNIT_OPTION, unit) if unit else {}
-    measured = load_measurement(Path(data), named, units)
+    measured = Measurement.from_file(data, named, units, lead, Rows(**rows))
+    if stiffness or feed:
+        measured = measured.with_spring(stated('--stiffness', stiffness or '', STIFFNESSES),
+                                        None if feed is None else stated('--feed', feed, SPEEDS))
     check_plausible_motion(measured, meant)
-    facts = {'file': Path(data).name, 'columns': _joined(named), 'units': _joined(units),
-             **({} if stick_velocity is None else {'stick_velocity': repr(stick_velocity)}),
-             **({'remark': measured.remark} if measured.remark else {})}
+    given = {'file': Path(data).name, 'columns': _joined(named), 'units': _joined(units), 'lead': lead,
+             'stick_velocity': None if stick_velocity is None else repr(stick_velocity)}
+    title = f'{len(measured.times)} rows, {measured.times[-1] - measured.times[0]:.6g} s: {", ".join(measured.columns)}'
     with new_folder('--out', out) as folder:
         inner = folder / Path(out).name
-        write_measured(inner, measured.times, measured.columns, facts)
+        measured.write(inner, {name: word for name, word in given.items() if word is not None})
         for path in inner.iterdir():
             path.rename(folder / path.name)
         inner.rmdir()
+    del measured    # of millions of rows
     run = read_run(out)
     assert isinstance(run, MeasuredRun)
-    show([Section(f'{run.name}: {len(measured.times)} rows, {run.duration:.6g} s: {", ".join(measured.columns)}',
+    show([Section(f'{run.name}: {title}',
                   [headline(run.summary), *(Sentence(note, NOTE) for note in (*run.notes, *_of_noise(run)))])])
     say_written(out)
 
@@ -69,7 +91,7 @@ def _of_noise(run: 'MeasuredRun') -> Iterator[str]:
     from ..identification.readings import own_noise_of, quantum_of
     from ..report.quantity import quantity
 
-    velocity = run.samples['velocity']
+    velocity = run.samples['velocity'][:_TELLING]
     quantum = quantum_of(velocity)
     noise = max(_NOISES * own_noise_of(velocity, quantum), quantum)
     if run.stick_velocity < noise:

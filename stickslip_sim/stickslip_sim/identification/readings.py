@@ -300,7 +300,7 @@ def instants_of(times: Numbers) -> Instants:
 def readings_of(run: Run, scene: Scene, resolutions: Mapping[str, float]) -> SensorReadings:
     """Return what a run measured, with stated `resolutions` (standard deviations) by channel; raises InputError."""
     columns = {name: np.asarray(values, dtype=np.float64) for name, values in run.samples.items()}
-    known = run.measured if isinstance(run, MeasuredRun) else (*OUTPUTS, 'drive_velocity', 'external_force')
+    known = run.telling if isinstance(run, MeasuredRun) else (*OUTPUTS, 'drive_velocity', 'external_force')
     keep = np.all([np.isfinite(columns[name]) for name in known if name in columns], axis=0)
     columns = {name: values[keep] for name, values in columns.items()}
     as_force = drives_directly(scene) and 'drive_force' in known

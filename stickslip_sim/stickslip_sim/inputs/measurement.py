@@ -1,37 +1,50 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A measurement: columns of a CSV file, or topics of a bag, over one time, in SI."""
+"""A measurement: columns of a file or arrays, or topics of a bag, over one time, in SI."""
 
+import math
+import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
-from ..core.arrays import Numbers
+from ..core.arrays import Numbers, has_parquet
 from ..core.errors import InputError
-from ..recording import Bag, RecordedMessage, open_bag
+from ..recording import Bag, RecordedMessage, open_bag, write_measured
 from ..scene.plausible import FASTEST, MEANT, Plausible, check_number
-from .csv_table import ACCELERATIONS, FORCES, LENGTHS, SPEEDS, TIMES, CsvTable, Wanted, all_in_si, wanted_column
+from .csv_table import (
+    ACCELERATIONS,
+    ALL,
+    FORCES,
+    LENGTHS,
+    SPEEDS,
+    TIMES,
+    ArrayTable,
+    CsvTable,
+    Rows,
+    Table,
+    Wanted,
+    all_in_si,
+    wanted_column,
+    with_lead,
+)
 
 QUANTITIES: Mapping[str, Mapping[str, Fraction]] = {
     'time': TIMES, 'position': LENGTHS, 'velocity': SPEEDS, 'acceleration': ACCELERATIONS, 'drive_position': LENGTHS,
     'drive_velocity': SPEEDS, 'drive_force': FORCES, 'friction_force': FORCES, 'external_force': FORCES,
 }
-MOST_ROWS = 2_000_000
+MOST_ROWS = 20_000_000
+_MOST_BYTES = 4 << 30
+_LATEST = 9e9      # s: later, or before 0, no run begins
+_PART = 1 << 18    # rows that are looked at together
 _FARTHEST = 10.0   # m, of a feed axis
 _APART = 20
 COLUMNS_OPTION, UNIT_OPTION = '--columns', '--unit'
-
-
-class MeasuredColumns(NamedTuple):
-    """`columns` by quantity over `times` (s, rising), in SI; `remark` says what was done to them."""
-
-    times: Numbers
-    columns: dict[str, Numbers]
-    remark: str = ''
 
 
 def pairs_of(option: str, words: Sequence[str]) -> dict[str, str]:
@@ -48,37 +61,197 @@ def pairs_of(option: str, words: Sequence[str]) -> dict[str, str]:
     return found
 
 
-def load_measurement(path: Path, columns: Mapping[str, str], units: Mapping[str, str]) -> MeasuredColumns:
-    """Return what a file measured: a CSV file with named columns, or a bag, whose columns are TOPIC:FIELD.
+@dataclass(frozen=True, repr=False)
+class Measurement:
+    """What was measured: `columns` by quantity over `times` (s, rising), in SI; `remarks` say what was done to them.
 
-    Raises InputError and RecordingError.
+    The quantities are position, velocity and acceleration of the slider (m, m/s, m/s2), drive_position,
+    drive_velocity, drive_force, friction_force and external_force (N).
     """
-    if not {'position', 'velocity'} & set(columns):
-        raise InputError(COLUMNS_OPTION, ','.join(columns), 'with a position or a velocity of the slider',
-                         'without them there is no motion')
+
+    times: Numbers
+    columns: dict[str, Numbers]
+    remarks: tuple[str, ...] = ()
+    facts: Mapping[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return (f'<Measurement: {len(self.times)} rows, {self.times[0]:.6g} to {self.times[-1]:.6g} s: '
+                f'{", ".join(self.columns)}>')
+
+    @classmethod
+    def from_arrays(cls, *, time: Any, units: Mapping[str, str] | None = None, lead: str | None = None,
+                    **quantities: Any) -> 'Measurement':
+        """Return a measurement of arrays (n,), as `from_arrays(time=t, position=x, units={'position': 'mm'})`.
+
+        Units that are not given are SI; `lead`, as '10 mm', converts rpm, rad/s and N m.  Raises InputError.
+        """
+        return cls.from_frame({'time': time, **quantities}, {name: name for name in ('time', *quantities)}, units,
+                              lead)
+
+    @classmethod
+    def from_frame(cls, frame: Any, columns: Mapping[str, str], units: Mapping[str, str] | None = None,
+                   lead: str | None = None) -> 'Measurement':
+        """Return a measurement of a DataFrame, or a dict of arrays; `columns` by quantity, as {'position': 'x [mm]'}.
+
+        Units and raises as `from_arrays`; the heading of a column may have its unit.
+        """
+        wanted = _wanted(columns, units or {}, lead)
+        arrays = {str(name): frame[name] for name in frame}
+        return _of_table(wanted, ArrayTable('frame', 'frame', arrays, list(wanted.values()), MOST_ROWS))
+
+    @classmethod
+    def from_file(cls, path: str | os.PathLike[str], columns: Mapping[str, str],
+                  units: Mapping[str, str] | None = None, lead: str | None = None, rows: Rows = ALL) -> 'Measurement':
+        """Return what a file measured: CSV, .mat, .parquet, .tdms, or a bag, whose columns are TOPIC:FIELD.
+
+        A column is a name, a number from 1 on, or `row`.  Raises InputError and RecordingError.
+        """
+        path, wanted = Path(path), _wanted(columns, units or {}, lead)
+        if path.is_dir() or path.suffix == '.mcap':
+            return _of_bag(path, wanted)._taken(rows)
+        if 'time' not in wanted:
+            raise InputError(COLUMNS_OPTION, ','.join(columns), 'with the time of each row', 'add time=COLUMN, or '
+                             f'time=row, and how long a row is: {UNIT_OPTION} time="0.5 ms"')
+        wanted = {'time': wanted['time'], **wanted}
+        reader = _READERS.get(path.suffix.lower())
+        table: Table = ArrayTable('DATA', path.name, reader(path), list(wanted.values()), MOST_ROWS, rows) if (
+            reader) else CsvTable('DATA', path, list(wanted.values()), MOST_ROWS, rows, _MOST_BYTES)
+        return _of_table(wanted, table)
+
+    def with_spring(self, stiffness: float, feed: float | None = None) -> 'Measurement':
+        """Return it with the position x = s − F/k of a slider that is pulled by a spring of a `stiffness` k, N/m.
+
+        F is the drive force; s is v t at a `feed` v, m/s, or the drive position where that was measured.
+        """
+        force, drive = self.columns.get('drive_force'), self.columns.get('drive_position')
+        if force is None or 'position' in self.columns:
+            raise InputError('--stiffness', stiffness, 'for a measurement of the force without the position',
+                             'add drive_force=COLUMN' if force is None else 'leave the position, or --stiffness, out')
+        if (feed is None) == (drive is None):
+            raise InputError('--feed', feed, 'the feed of the spring, where its position was not measured',
+                             'give it, as "2 mm/s"' if feed is None else 'leave it, or drive_position, out')
+        if not 0.0 < stiffness < math.inf or not math.isfinite(feed or 0.0):
+            raise InputError('--stiffness', stiffness, '> 0 N/m, and a finite feed', 'for example 600 N/mm')
+        way = (feed or 0.0) * (self.times - self.times[0]) if drive is None else drive
+        formula = f'x = {"s" if drive is not None else "v t"} - F/k, k = {stiffness:g} N/m' + (
+            '' if feed is None else f', v = {feed:g} m/s')
+        return replace(self, columns={**self.columns, 'position': way - force / stiffness, 'drive_position': way},
+                       remarks=(*self.remarks, f'the position is derived, not measured: {formula}'),
+                       facts={**self.facts, 'derived': 'position', 'stiffness': repr(stiffness)})
+
+    def write(self, folder: str | os.PathLike[str], facts: Mapping[str, str] | None = None) -> None:
+        """Write it as a new run folder, which every verb and `read_run` take.  Raises InputError, RecordingError."""
+        if not {'position', 'velocity'} & set(self.columns):
+            raise InputError(COLUMNS_OPTION, ','.join(self.columns), 'with a position or a velocity of the slider',
+                             'without them there is no motion; a force and the --stiffness of its spring will do')
+        remark = {'remark': '; '.join(self.remarks)} if self.remarks else {}
+        write_measured(Path(folder), self.times, self.columns, {**self.facts, **(facts or {}), **remark})
+
+    def _taken(self, rows: Rows) -> 'Measurement':
+        of = np.flatnonzero((self.times >= rows.begin) & (self.times <= rows.end))
+        of = of[of % rows.every == 0]
+        if len(of) < 2:
+            raise InputError('DATA', f'{len(of)} rows', 'two rows or more', 'look at --from, --to and --every')
+        return replace(self, times=self.times[of], columns={name: one[of] for name, one in self.columns.items()})
+
+
+def _wanted(columns: Mapping[str, str], units: Mapping[str, str], lead: str | None) -> dict[str, Wanted]:
+    for option, names in ((COLUMNS_OPTION, columns), (UNIT_OPTION, units)):
+        for name in names:
+            if name not in QUANTITIES:
+                raise InputError(option, name, 'a quantity', 'the quantities are ' + ', '.join(QUANTITIES))
     for name in units:
         if name not in columns:
             raise InputError(UNIT_OPTION, name, f'of a quantity in {COLUMNS_OPTION}', 'add its column')
-    wanted = {name: wanted_column(COLUMNS_OPTION, column, UNIT_OPTION, units.get(name), QUANTITIES[name])
-              for name, column in columns.items()}
-    if path.is_dir() or path.suffix == '.mcap':
-        return _of_bag(path, wanted)
-    if 'time' not in wanted:
-        raise InputError(COLUMNS_OPTION, ','.join(columns), 'with the time of each row', 'add time=COLUMN')
-    table = CsvTable('DATA', path, list(wanted.values()), MOST_ROWS)
+    turn = None if lead is None else Fraction(stated('--lead', lead, LENGTHS))
+    if turn is not None and turn <= 0:
+        raise InputError('--lead', lead, '> 0 m a turn', 'what counts the other way has a unit like "-1 deg"')
+    return {name: wanted_column(COLUMNS_OPTION, str(column), UNIT_OPTION, units.get(name), QUANTITIES[name] if (
+        turn is None) else with_lead(QUANTITIES[name], turn), takes_heading=True) for name, column in columns.items()}
+
+
+def stated(option: str, text: str, units: Mapping[str, Fraction]) -> float:
+    """Return a number with its unit, as "10 mm", in SI; raises InputError."""
+    if not re.fullmatch(r'[-+.\d]\S* *[^-+.\d\s].*', text.strip()):
+        raise InputError(option, text, 'a number with its unit', f'for example "10 {next(iter(units))}"')
+    return float(wanted_column('', '', option, text, units).in_si)
+
+
+def _of_table(wanted: Mapping[str, Wanted], table: Table) -> Measurement:
     numbers = dict(zip(wanted, table.columns, strict=True))
-    times = numbers.pop('time')
-    late = np.flatnonzero(np.diff(times) <= 0.0)
-    if len(late):
-        row = int(late[0]) + 1
-        table.refuse(row, float(times[row]), f'a time after the one before it, {float(times[row - 1])!r} s',
-                     'sort the rows by time, and leave out what is there twice')
+    units = ', '.join(f'{name} {one.unit}' for name, one, given in zip(wanted, table.wanted, wanted.values())
+                      if one.unit != given.unit)
+    times, remarks = numbers.pop('time'), [*table.remarks]
+    if units:
+        remarks.append(f'units of the headings: {units}')
     if len(times) < 2:
-        raise InputError('DATA', path.name, 'a file of two rows or more', 'a run takes time')
-    return MeasuredColumns(times, numbers)
+        raise InputError('DATA', f'{len(times)} rows', 'a file of two rows or more', 'a run takes time')
+    if times[0] < 0.0 or times[-1] > _LATEST:
+        remarks.append(f'times count from the first row, at {float(times[0])!r} s')
+        times = times - times[0]
+    return Measurement(times, numbers, tuple(remarks))
 
 
-def check_plausible_motion(measured: MeasuredColumns, meant: Sequence[str]) -> None:
+# Files that hold arrays by name.
+
+def _mat(path: Path) -> Mapping[str, Any]:
+    from scipy.io import loadmat
+
+    try:
+        held = loadmat(path, squeeze_me=True)
+    except NotImplementedError:
+        raise InputError('DATA', str(path), 'a MAT file up to version 7', "save it with save(..., '-v7')") from None
+    except (OSError, ValueError, TypeError) as error:
+        raise InputError('DATA', str(path), 'a readable MAT file', str(error)) from None
+    return dict(_vectors({name: value for name, value in held.items() if not name.startswith('__')}))
+
+
+def _vectors(held: Mapping[str, Any], of: str = '') -> Iterator[tuple[str, Any]]:
+    """Yield the columns in variables: vectors, columns of matrices as x[1], fields of structures as run.x."""
+    for name, value in held.items():
+        array = np.asarray(value)
+        if array.dtype.names and array.ndim == 0:
+            yield from _vectors({part: array[part].item() for part in array.dtype.names}, f'{of}{name}.')
+        elif array.ndim == 1 and array.dtype.kind in 'fiub':
+            yield f'{of}{name}', array
+        elif array.ndim == 2 and array.dtype.kind in 'fiub':
+            yield from ((f'{of}{name}[{k}]', column) for k, column in enumerate(array.T, 1))
+
+
+def _parquet(path: Path) -> Mapping[str, Any]:
+    if not has_parquet():
+        raise InputError('DATA', str(path), 'read by pandas with fastparquet or pyarrow, which are not installed',
+                         'pip install pandas fastparquet, or export it as CSV')
+    import pandas
+
+    try:
+        frame = pandas.read_parquet(path)
+    except (OSError, ValueError) as error:
+        raise InputError('DATA', str(path), 'a readable Parquet file', str(error)) from None
+    return {str(name): frame[name].to_numpy() for name in frame}
+
+
+def _tdms(path: Path) -> Mapping[str, Any]:
+    try:
+        from nptdms import TdmsFile  # type: ignore[import-not-found]
+    except ImportError:
+        raise InputError('DATA', str(path), 'read by npTDMS, which is not installed',
+                         'pip install npTDMS, or export it as CSV') from None
+    try:
+        channels = [channel for group in TdmsFile.read(path).groups() for channel in group.channels()]
+    except (OSError, ValueError) as error:
+        raise InputError('DATA', str(path), 'a readable TDMS file', str(error)) from None
+    names = [channel.name for channel in channels]
+    found = {channel.name if names.count(channel.name) == 1 else f'{channel.group_name}/{channel.name}': channel[:]
+             for channel in channels}
+    waves = [channel for channel in channels if 'wf_increment' in channel.properties]
+    return {**({'time': waves[0].time_track()} if waves and 'time' not in found else {}), **found}
+
+
+_READERS = {'.mat': _mat, '.parquet': _parquet, '.tdms': _tdms}
+
+
+def check_plausible_motion(measured: Measurement, meant: Sequence[str]) -> None:
     """Raise InputError on a quantity that moves as far or as fast as no feed axis does, unless it is among `meant`."""
     for name in meant:
         if name not in measured.columns:
@@ -87,16 +260,19 @@ def check_plausible_motion(measured: MeasuredColumns, meant: Sequence[str]) -> N
         unit = f'a wrong unit is the usual mistake: {UNIT_OPTION} {name}='
         if name in meant or QUANTITIES[name] not in (LENGTHS, SPEEDS):
             continue
+        low, high = float(values.min()), float(values.max())
         if QUANTITIES[name] is SPEEDS:
-            check_number(name, float(np.abs(values).max()), Plausible(FASTEST, 'm/s', f'{unit}mm/s'))
+            check_number(name, max(-low, high), Plausible(FASTEST, 'm/s', f'{unit}mm/s'))
             continue
-        check_number(name, float(np.ptp(values)), Plausible(_FARTHEST, 'm', f'{unit}mm'))
+        check_number(name, high - low, Plausible(_FARTHEST, 'm', f'{unit}mm'))
         apart = min(_APART, len(values) - 1)   # readings: noise of single ones makes no speed
-        speeds = (values[apart:] - values[:-apart]) / (measured.times[apart:] - measured.times[:-apart])
-        check_number(name, float(np.abs(speeds).max()), Plausible(FASTEST, 'm/s', f'{unit}mm'))
+        for first in range(0, len(values) - apart, _PART):
+            end = min(first + _PART, len(values) - apart)
+            ways, times = (one[first + apart:end + apart] - one[first:end] for one in (values, measured.times))
+            check_number(name, float(np.abs(ways / times).max()), Plausible(FASTEST, 'm/s', f'{unit}mm'))
 
 
-def _of_bag(path: Path, wanted: Mapping[str, Wanted]) -> MeasuredColumns:
+def _of_bag(path: Path, wanted: Mapping[str, Wanted]) -> Measurement:
     """Return the topics of a bag at the times of the first one, from its first message on."""
     fields: dict[str, dict[str, Wanted]] = {}
     for name, column in wanted.items():
@@ -122,8 +298,8 @@ def _of_bag(path: Path, wanted: Mapping[str, Wanted]) -> MeasuredColumns:
     if len(times) < 2:
         raise InputError('DATA', path.name, 'a bag whose topics have a time in common', 'import fewer of them')
     first, *others = fields
-    return MeasuredColumns(times, columns, f'{" and ".join(others)}: linear between messages, at the times of {first}'
-                       if others else '')
+    remark = f'{" and ".join(others)}: linear between messages, at the times of {first}'
+    return Measurement(times, columns, (remark,) if others else ())
 
 
 # Numbers of a topic of a bag over time, as a table of measured numbers.

@@ -33,6 +33,8 @@ MEASURED = 'measured'            # the origin in the metadata of such a bag, and
 NO_MODE = 255                    # of a state whose mode nobody measured
 OF_STATE = ('position', 'velocity', 'acceleration', 'drive_position', 'drive_velocity', 'drive_force')
 OF_FORCES = {'friction_force': topics.FRICTION_FORCE, 'external_force': topics.EXTERNAL_FORCE}
+_BLOCK = 1 << 16                  # rows that are written together
+_RATED = 1 << 20                  # rows that are differentiated together
 _LATEST = 9.2e9                   # s: log times are whole nanoseconds of 64 bits
 
 
@@ -44,18 +46,19 @@ def write_measured(folder: Path | str, times: Numbers, columns: Mapping[str, Num
     """
     if not 0.0 <= times[0] <= times[-1] <= _LATEST:
         raise InputError('time', float(times[0]), f'0 to {_LATEST:g} s', 'let time begin at 0 or later')
-    stamps = np.rint(times * 1e9).astype(np.int64)
     used = [topics.SLIDER_STATE, *(topic for name, topic in OF_FORCES.items() if name in columns)]
-    steps = np.arange(len(times), dtype=np.int64)
-    numbers = _numbers(steps, times, columns)
-    rows = []
-    for channel, topic in enumerate(used, 1):
-        own = numbers if topic != topics.EXTERNAL_FORCE else {'force': columns['external_force']}
-        rows.append(MessageRows(channel, flat_layout(topic.type)).packed(stamps, stamps, steps, own))
+    rows = [MessageRows(channel, flat_layout(topic.type)) for channel, topic in enumerate(used, 1)]
     metadata = {'version': __version__, 'origin': MEASURED, MEASURED: ','.join(columns), **facts}
     bag = BagWriter(folder, [topic.resolved() for topic in used], {}, metadata)
     try:
-        bag.write_block(interleaved(rows, stamps, []))
+        for first in range(0, len(times), _BLOCK):
+            part = slice(first, first + _BLOCK)
+            stamps = np.rint(times[part] * 1e9).astype(np.int64)
+            steps = np.arange(first, first + len(stamps))
+            numbers = _numbers(steps, times[part], {name: column[part] for name, column in columns.items()})
+            bag.write_block(interleaved([
+                of.packed(stamps, stamps, steps, numbers if topic != topics.EXTERNAL_FORCE else
+                          {'force': columns['external_force'][part]}) for of, topic in zip(rows, used)], stamps, []))
         bag.close()
     except BaseException:
         bag.abandon()
@@ -65,12 +68,26 @@ def write_measured(folder: Path | str, times: Numbers, columns: Mapping[str, Num
 def _numbers(steps: NDArray[np.int64], times: Numbers, columns: Mapping[str, Numbers]) -> dict[str, NDArray[Any]]:
     """Return the fields of the messages of states and friction."""
     count = len(times)
-    unknown = np.full(count, np.nan)
+    unknown = _unknown(count)
     return {
         'step': steps, 'time': times, **{name: columns.get(name, unknown) for name in OF_STATE},
         'rest_time': unknown, 'mode': np.full(count, NO_MODE), 'direction': np.zeros(count, np.int64),
         'force': columns.get('friction_force', unknown), 'coefficient': unknown, 'contact_deflection': unknown,
     }
+
+
+def _unknown(count: int) -> Numbers:
+    """Return so many NaN, in the room of one."""
+    return np.broadcast_to(np.nan, count)
+
+
+def _rates(values: Numbers, times: Numbers) -> Numbers:
+    """Return the rates of change, part by part: the room for those of all at once is that of six columns."""
+    found = np.empty(len(values))
+    for first in range(0, len(values), _RATED):
+        begin, end = max(first - 1, 0), first + _RATED
+        found[first:end] = np.gradient(values[begin:end + 1], times[begin:end + 1])[first - begin:][:_RATED]
+    return found
 
 
 STICK_SHARE = 0.05   # of the largest speed: the threshold where none is stated
@@ -86,6 +103,12 @@ class MeasuredRun(RecordedRun):
         super().__init__(bag, path)
         self.measured = tuple(bag.metadata[METADATA].get(MEASURED, '').split(','))
         self.notes = (*self.notes, *self._derived())
+
+    @property
+    def telling(self) -> tuple[str, ...]:
+        """What was measured, but for the drive force where the position was derived from it and says the same."""
+        is_derived = 'derived' in self.bag.metadata[METADATA]
+        return tuple(name for name in self.measured if not (is_derived and name == 'drive_force'))
 
     @property
     def title(self) -> str:
@@ -114,7 +137,8 @@ class MeasuredRun(RecordedRun):
             stated = None if given is None else float(given)
         except ValueError:
             raise RecordingError(f'{self.bag.path}: its stick_velocity is no number: {given}') from None
-        return STICK_SHARE * float(np.abs(self._velocity).max()) if stated is None else stated
+        velocity = self._velocity
+        return STICK_SHARE * max(float(velocity.max()), -float(velocity.min())) if stated is None else stated
 
     def state_columns(self, fields: Sequence[str]) -> Columns:
         """Return columns of `states`, with modes and directions that are derived."""
@@ -127,7 +151,8 @@ class MeasuredRun(RecordedRun):
     @cached_property
     def _derived_states(self) -> Columns:
         states = {**self._recorded, 'velocity': self._velocity}
-        modes, directions = np.full(len(self._velocity), float(Mode.STICK)), np.zeros(len(self._velocity))
+        modes: Any = np.full(len(self._velocity), int(Mode.STICK), np.int8)   # of ten million rows
+        directions: Any = np.zeros(len(self._velocity), np.int8)
         for first, last, peak, direction in slips_of(self._velocity, self.stick_velocity):
             modes[first:peak + 1], modes[peak + 1:last] = Mode.ACCELERATING, Mode.DECELERATING
             directions[first:last] = direction
@@ -139,7 +164,7 @@ class MeasuredRun(RecordedRun):
         count = len(self._velocity)
         known = {**self._derived_states, 'friction_force': self._force(FRICTION_FORCE.type, 'friction_force'),
                  'external_force': self._force(EXTERNAL_FORCE.type, 'external_force')}
-        return {name: known.get(name, np.full(count, np.nan)) for name in COLUMNS}
+        return {name: known.get(name, _unknown(count)) for name in COLUMNS}
 
     @cached_property
     def events(self) -> list[Event]:
@@ -162,23 +187,24 @@ class MeasuredRun(RecordedRun):
 
     @cached_property
     def _recorded(self) -> Columns:
-        columns = self.bag.columns_of(SLIDER_STATE, ('time', 'step', *OF_STATE, 'rest_time'))
-        if len(columns['time']) < 2 or not (np.diff(columns['time']) > 0.0).all():
+        known = [name for name in OF_STATE if name in self.measured]
+        columns = self.bag.columns_of(SLIDER_STATE, ('time', *known))
+        times, count = columns['time'], len(columns['time'])
+        if count < 2 or not (times[1:] > times[:-1]).all():
             raise RecordingError(f'{self.bag.path}: a measured run has at least 2 states, one after the other')
-        return columns
+        return {'step': np.arange(count), **dict.fromkeys((*OF_STATE, 'rest_time'), _unknown(count)), **columns}
 
     @cached_property
     def _velocity(self) -> Numbers:
         states = self._recorded
-        velocity = states['velocity'] if 'velocity' in self.measured else np.gradient(states['position'],
-                                                                                       states['time'])
+        velocity = states['velocity'] if 'velocity' in self.measured else _rates(states['position'], states['time'])
         if not np.isfinite(velocity).all():
             self._lack('position or velocity')
         return np.asarray(velocity, dtype=np.float64)
 
     def _force(self, type_name: str, name: str) -> Numbers:
         if name not in self.measured:
-            return np.full(len(self._velocity), np.nan)
+            return _unknown(len(self._velocity))
         topic = next((topic for topic, kind in self.bag.topics.items() if kind == type_name), None)
         force = np.empty(0) if topic is None else self.bag.columns(topic)['force']
         if len(force) != len(self._velocity):
