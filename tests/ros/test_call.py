@@ -70,7 +70,7 @@ def test_steps_while_it_is_paused(folder: Path, capsys: Capture) -> None:
         assert 'drive -20 mm/s' in state
         assert said(capsys, 'step').startswith('1 step made')
         assert 'drive -20 mm/s' in said(capsys, 'step')          # it goes on under what is in force
-        assert 'steps = 0 is refused' in refusal(capsys, 'step', '0')
+        assert 'steps = 0 is refused' in refusal(capsys, 'step', '0', '--velocity', '0.01')
         assert 'velocity = 5.0 is refused' in refusal(capsys, 'step', '--velocity', '5')
     finally:
         assert said(capsys, 'resume').startswith('running at simulation time ')

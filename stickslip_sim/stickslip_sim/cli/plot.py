@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from ..runs import Run
 
 
-@verb(short_help='Draw any run: motion, stretch, forces, modes, faults; or several over each other.')
+@verb(short_help='Draw any run, or several over each other.')
 @click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...',
                 shell_complete=completion.complete_scenes)
 @click.option('--window', metavar='A:B', help='Show this part, of one run beside the whole, s; A may be first_command, '

@@ -55,7 +55,7 @@ class OwnControllerNode(ListedNode):
         self._axis, self._is_over = LockStep(self, is_over), is_over
         self._velocity_out = publisher(self, DRIVE_VELOCITY)
         self._force_out: Any = None
-        self._clock: deque[SliderState] = deque()    # states whose measurement is to come
+        self._unmeasured: deque[SliderState] = deque()    # states whose measurement is to come
         self._measured: dict[tuple[int, int], JointState] = {}
         self._first = self._latest = -1    # steps of the axis: the one that it began with, the latest that came
         self._next = 0                     # step of its own after which it is asked
@@ -84,7 +84,7 @@ class OwnControllerNode(ListedNode):
         """Listen, where the axis makes its steps itself."""
         if self._axis.scene.time.mode != 'lockstep':
             subscription(self, JOINT_STATES, self._hear)
-            subscription(self, SLIDER_STATE, lambda state: self._clock.append(state))
+            subscription(self, SLIDER_STATE, lambda state: self._unmeasured.append(state))
             self.create_timer(_REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def turn(self) -> bool:
@@ -92,12 +92,12 @@ class OwnControllerNode(ListedNode):
         if self._axis.scene.time.mode == 'lockstep':
             self._make_steps()
             return True
-        while self._clock:
-            state = self._clock[0]
+        while self._unmeasured:
+            state = self._unmeasured[0]
             message = self._measured.pop(_stamp(state), None)
-            if message is None and len(self._clock) == 1:
+            if message is None and len(self._unmeasured) == 1:
                 return False    # it may be on its way
-            self._clock.popleft()
+            self._unmeasured.popleft()
             if self._is_answered(state, None if message is None else measurement(message, self._joints)):
                 return True
         return False
