@@ -1,19 +1,16 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the hot path, plain annotated Python, as one Cython unit, and builds it: `stickslip_sim._hot`.
+"""Prints the hot path, plain annotated Python, as one file of C, and builds it for Python: `stickslip_sim._hot`.
 
-| file             | what                                                                     |
-|------------------|--------------------------------------------------------------------------|
-| `sources.py`     | which files and functions belong to it, and the digest of the files      |
-| `constants.py`   | numbers with a name, also those that another file or an enumeration has  |
-| `c_types.py`     | what an annotation means in C                                            |
-| `scope.py`       | what the names of a file mean in the unit                                |
-| `local_types.py` | the types of the locals of a function                                    |
-| `functions.py`   | a function as Cython takes it                                            |
-| `records.py`, `records.pyx.in` | the records in C                           |
-| `loops.pyx.in`   | what runs from axis to axis or piece to piece without Python, by hand    |
-| `unit.py`        | all of it as one text                                                    |
-| `build.py`       | the command of setuptools that compiles it                               |
+| file             | what                                                                                     |
+|------------------|------------------------------------------------------------------------------------------|
+| `sources.py`     | which files and functions belong to it, their constants, and the digest of the files     |
+| `kinds.py`       | what an annotation means in C; the records                                               |
+| `scope.py`       | what the names of a file mean in the unit, and the types of a function's locals          |
+| `printer.py`     | a function in C                                                                          |
+| `unit.py`        | all of it as one text, and the words of the wrapper                                      |
+| `wrapper.pyx.in` | the wrapper for Python: the records as classes, loops that run while other threads may   |
+| `build.py`       | the command of setuptools that compiles it, and two helpers: of `cli`, of `ros`           |
 
 Why one unit and why these flags: docs/solvers.md, "How the hot path is compiled".
 """

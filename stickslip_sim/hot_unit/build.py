@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The command of setuptools that writes the unit; Cython translates it there, and the C compiler does the rest."""
+"""The command of setuptools that writes the unit in C, and its wrapper, which Cython translates; and compiles both."""
 
 import os
 import shutil
@@ -11,8 +11,8 @@ from setuptools import Extension
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import SetupError
 
-from .errors import UnitError
-from .unit import write_unit
+from .sources import UnitError
+from .unit import ENTRIES, LOOPS, Unit
 
 PACKAGE = 'stickslip_sim'
 SWITCH = 'STICKSLIP_COMPILED'
@@ -26,7 +26,7 @@ FLAGS = ['-O3', '-g0', '-ffp-contract=off', '-fno-math-errno', '-fno-trapping-ma
 
 # What the package also runs without.  `text` needs a compiler of C++ that knows std::to_chars of floats; else Python
 # writes the numbers.
-_OTHERS = {'_text': 'text.pyx', '_standstill': 'standstill.pyx'}
+_OTHERS = {'_text': 'cli/text.pyx', '_standstill': 'ros/standstill.pyx'}
 
 
 def extensions() -> list[Extension]:
@@ -46,24 +46,28 @@ class BuildUnit(build_ext):  # type: ignore[misc]
         """Write the unit and build it; raises SetupError, one line that says what to install or to change."""
         _require_cython()
         _require_compiler(self.compiler.compiler_so[0])
-        name = ext.name.rpartition('.')[2]
-        source = Path(self.build_temp) / f'{name}.pyx'
-        text = _text_of(name)
-        if not source.is_file() or source.read_text(encoding='utf-8') != text:
-            source.parent.mkdir(parents=True, exist_ok=True)
-            source.write_text(text, encoding='utf-8')
-        ext.sources = [str(source)]
+        ext.sources = [self._written(ext.name.rpartition('.')[2])]
         super().build_extension(ext)
 
+    def _written(self, name: str) -> str:
+        """Write an extension in Cython, and what it includes; raises SetupError."""
+        package = Path(__file__).resolve().parents[1] / PACKAGE
+        if name in _OTHERS:
+            return self._write(f'{name}.pyx', (package / _OTHERS[name]).read_text(encoding='utf-8'))
+        try:
+            unit = Unit(package)
+            self._write('engine.c', unit.text(ENTRIES | LOOPS))
+            return self._write(f'{name}.pyx', unit.wrapper('engine.c'))
+        except UnitError as error:
+            raise SetupError(str(error)) from None
 
-def _text_of(name: str) -> str:
-    """Return the text of an extension in Cython; raises SetupError."""
-    if name in _OTHERS:
-        return (Path(__file__).parent / _OTHERS[name]).read_text(encoding='utf-8')
-    try:
-        return write_unit(Path(__file__).resolve().parents[1] / PACKAGE)
-    except UnitError as error:
-        raise SetupError(str(error)) from None
+    def _write(self, name: str, text: str) -> str:
+        """Write a file among what is in between, unless it is there; return its path."""
+        path = Path(self.build_temp) / name
+        if not path.is_file() or path.read_text(encoding='utf-8') != text:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding='utf-8')
+        return str(path)
 
 
 def _require_cython() -> None:

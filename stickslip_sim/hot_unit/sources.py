@@ -1,16 +1,25 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The files of the hot path: those in its rooms with a function that is marked as compiled."""
+"""The files of the hot path: those in its rooms with a function that is marked as compiled; and their constants."""
 
 import ast
 import hashlib
+import math
+from enum import IntEnum
 from functools import cache, cached_property
 from pathlib import Path
-
-from .errors import UnitError
+from typing import Any
 
 ROOMS = ('friction', 'linear', 'axis', 'solvers')
-MARKS = {'compiled': 'cdef', 'inlined': 'cdef inline'}
+MARKS = {'compiled': 'static', 'inlined': 'static inline'}
+_BASICS = {'math': math, 'float': float, 'int': int, 'len': len, 'range': range, 'tuple': tuple}
+
+
+class UnitError(Exception):
+    """A source that cannot be compiled: one line that says where, what, and what to write instead."""
+
+    def __init__(self, path: Path, node: ast.AST, message: str) -> None:
+        super().__init__(f'{path}:{getattr(node, "lineno", 1)}: {message}')
 
 
 class Source:
@@ -25,10 +34,10 @@ class Source:
         """The file, parsed."""
         return ast.parse(self.text, str(self.path))
 
-    @property
-    def prefix(self) -> str:
-        """What the names of its functions begin with in the unit: its path in words."""
-        return self.name.removesuffix('.py').replace('/', '_')
+    def unit_name(self, name: str) -> str:
+        """Return the name in the unit of something in this file: begun with that of the file."""
+        file = self.path.parent if self.path.stem == '__init__' else self.path
+        return f'{file.stem}_{name.lstrip("_")}'
 
     @cached_property
     def functions(self) -> dict[str, ast.FunctionDef]:
@@ -59,7 +68,7 @@ class Source:
 
 
 def mark_of(function: ast.FunctionDef) -> str | None:
-    """Return what a marked function is declared as in Cython, None of another one."""
+    """Return what a marked function is declared as in C, None of another one."""
     for decorator in function.decorator_list:
         if isinstance(decorator, ast.Name) and decorator.id in MARKS:
             return MARKS[decorator.id]
@@ -86,3 +95,51 @@ def digest_of(package: Path, names: list[str]) -> str:
     for name in names:
         digest.update((package / name).read_bytes())
     return digest.hexdigest()
+
+
+class Constants:
+    """What the names in the files of a package stand for, read without running the package."""
+
+    def __init__(self, sources: Sources) -> None:
+        self._sources = sources
+        self.of = cache(self._read)
+
+    def _read(self, file: str) -> dict[str, Any]:
+        """Return the constants of a file: numbers, tuples of them, text, and enumerations."""
+        source = self._sources.of(file)
+        found: dict[str, Any] = {}
+        for node in source.tree.body:
+            if isinstance(node, ast.ImportFrom) and node.level:
+                found.update(self._imported(source, node))
+            elif isinstance(node, ast.ClassDef) and any(ast.unparse(base) == 'IntEnum' for base in node.bases):
+                found[node.name] = IntEnum(node.name, _values(node.body, {}))
+            elif isinstance(node, ast.Assign | ast.AnnAssign):
+                found.update(_values([node], found))
+        return found
+
+    def _imported(self, source: Source, node: ast.ImportFrom) -> dict[str, Any]:
+        found = {}
+        for alias in node.names:
+            file, name = source.imports[alias.asname or alias.name]
+            values = self.of(file)
+            if name in values:
+                found[alias.asname or alias.name] = values[name]
+        return found
+
+
+def _values(nodes: list[ast.stmt], known: dict[str, Any]) -> dict[str, Any]:
+    """Return what assignments give names to, as far as that follows from numbers and other constants."""
+    found: dict[str, Any] = {}
+    for node in nodes:
+        if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
+            continue
+        try:
+            value = eval(ast.unparse(node.value), {'__builtins__': {}}, {**_BASICS, **known, **found})
+        except (NameError, TypeError, AttributeError, ValueError):   # not a constant
+            continue
+        for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+            if isinstance(target, ast.Tuple):
+                found.update({ast.unparse(name): one for name, one in zip(target.elts, value, strict=True)})
+            else:
+                found[ast.unparse(target)] = value
+    return found

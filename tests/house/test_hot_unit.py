@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from hot_unit.unit import Unit
 from stickslip_sim.core import hot_path
 from tests.support.repository import ROOT
 
@@ -22,7 +23,7 @@ NO_CYTHON = 'import sys; sys.modules["Cython"] = None'
 
 def unit_of(package: Path, folder: Path) -> tuple[str, str]:
     """Return the unit of a package and what was said instead."""
-    out = folder / 'unit.pyx'
+    out = folder / 'unit.c'
     done = subprocess.run([sys.executable, '-m', 'hot_unit', package, out], cwd=PROJECT, capture_output=True, text=True,
                           timeout=60, check=False)
     assert (done.returncode == 0) == out.exists()
@@ -41,36 +42,48 @@ def package_with(function: str, folder: Path) -> Path:
 def test_every_marked_function_is_in_the_unit(tmp_path: Path) -> None:
     text, said = unit_of(PACKAGE, tmp_path)
     assert said == ''
-    for name in ('friction_static_static_coefficient', 'axis_motion_travel', 'solvers_fixed_step_steps_step'):
+    for name in ('static_static_coefficient', 'motion_travel', 'steps_step'):
         assert f' {name}(' in text
-    assert 'cpdef (long, long) solvers_exact_engine_advance(Parameters p, State s, ' in text
+    assert '\nstatic Long2 engine_advance(Parameters *p, State *s, ' in text
     if hot_path.UNIT is not None:
-        assert f"DIGEST = '{hot_path.UNIT.DIGEST}'" in text
-        assert f'SOURCES = {hot_path.UNIT.SOURCES!r}' in text
+        unit = Unit(PACKAGE)
+        assert (unit.digest, tuple(unit.names)) == (hot_path.UNIT.DIGEST, hot_path.UNIT.SOURCES)
 
 
-def test_a_name_for_a_tuple_is_one_in_c_too(tmp_path: Path) -> None:
-    text, said = unit_of(package_with('''
-def swapped(osc: Oscillator, both: bool) -> tuple[float, int]:
-    """Return two."""
+def test_a_function_keeps_its_names(tmp_path: Path) -> None:
+    text = Unit(package_with('''
+def swapped(osc: Oscillator, both: bool, z: complex) -> tuple[float, int]:
+    """Return two.
+
+    And no more.
+    """
     first, count = (osc.gamma, 1) if both else (osc[1], 2)
-    return (first, count) if both else (float(count), int(first))
-''', tmp_path / 'package'), tmp_path)
-    assert said == ''
-    _, _, rest = text.partition('cdef (double, long) linear_oscillator_swapped(')
-    head, *body = rest.split('\n\n')[0].split('\n')
-    assert head == '(double, double, double, double, double) osc, bint both) noexcept nogil:'
-    assert '\n'.join(body) == '''
-    cdef long count
-    cdef double first
-    if both:
-        first, count = (osc[0], 1)
-    else:
-        first, count = (osc[1], 2)
-    if both:
-        return (first, count)
-    else:
-        return (cast(double, count), cast(long, first))'''.removeprefix('\n')
+    for k in range(int(first)):
+        first, second = max(first, second), first ** 2.0 - (first - float(k)) / 3
+        if 0.0 < second <= 1.0 and not (both or count == 1):
+            z *= first
+    return (first, count) if both else (z.real, int(first))
+''', tmp_path)).text({HOST: ['swapped']})
+    _, _, rest = text.partition('\n/* Return two. */\n')
+    assert rest == '''
+static DoubleLong oscillator_swapped(Oscillator osc, bool both, Complex z)
+{
+    long count;
+    double first, second;
+    DoubleLong got1 = both ? (DoubleLong){osc.gamma, 1} : (DoubleLong){osc.omega2, 2};
+    first = got1.item0;
+    count = got1.item1;
+    for (long k = 0, k_end = (long)first; k < k_end; k++) {
+        Double2 got2 = (Double2){larger(first, second), pow(first, 2.0) - (first - (double)k) / 3};
+        first = got2.item0;
+        second = got2.item1;
+        if ((0.0 < second && second <= 1.0) && !(both || count == 1)) {
+            z = product_of(z, complex_of(first, 0.0));
+        }
+    }
+    return both ? (DoubleLong){first, count} : (DoubleLong){z.real, (long)first};
+}
+'''.removeprefix('\n')
 
 
 @pytest.mark.parametrize(('function', 'what'), [
@@ -83,6 +96,10 @@ def swapped(osc: Oscillator, both: bool) -> tuple[float, int]:
     ('def f(t: float) -> float: return math.gamma(t)', 'f uses math.gamma, which the unit does not take from C'),
     ('def f(t: float) -> float: return Path(t)', 'f uses Path, which is neither a number nor a marked function'),
     ('def f(t: float) -> float: return bound(osc=t)', 'f uses bound with names of arguments; give them in order'),
+    ('def f(t: float) -> float: return t @ t', 'f uses t @ t, an operator which the unit does not have'),
+    ('def f(t: float) -> float: return [t]', 'f uses [t], an expression which the unit does not have'),
+    ('def f(t: float) -> float: raise t', "f uses 'raise t', a statement which the unit does not have"),
+    ('def f(t: float) -> bool: return t and True', 'f uses t and True, which is of more than truths; compare each'),
 ])
 def test_what_c_does_not_have_is_refused_in_one_line(function: str, what: str, tmp_path: Path) -> None:
     package = package_with(function, tmp_path / 'package')

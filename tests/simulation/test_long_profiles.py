@@ -13,13 +13,16 @@ import numpy as np
 import pytest
 
 from stickslip_sim.axis import InitialState, pack
+from stickslip_sim.axis.records import PLAIN
 from stickslip_sim.core import hot_path
 from stickslip_sim.core.errors import UnsoundError
 from stickslip_sim.core.input_profile import InputProfile, steps, table
 from stickslip_sim.core.time_grid import instants
 from stickslip_sim.core.types import Event, Instant, Sample
 from stickslip_sim.simulation.simulator import Simulator
-from stickslip_sim.solvers import DONE, FULL, Solver, exact, fixed_step, with_advance
+from stickslip_sim.solvers import DONE, FULL, PieceWalk, Solver, SolverOfFunctions, exact, fixed_step, with_advance
+from stickslip_sim.solvers.exact import engine
+from stickslip_sim.solvers.exact.pieces import Pieces, enter_pieces
 from stickslip_sim.solvers.walk import walk_of
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, instant, paper_axis
@@ -29,6 +32,18 @@ DURATION = 3.0
 PIECES = 3000
 ONE_BY_ONE = with_advance(exact.SOLVER, exact.advance)   # without a walk of its own
 AXIS = paper_axis(COMPLIANT)
+
+
+def _enter(p: Any, s: Any, drive: Pieces, force: Pieces, *others: Any) -> tuple[float, int, int]:
+    return enter_pieces(p, s, drive, force, Pieces(None), *others)
+
+
+def _never(*_: Any) -> tuple[int, float, int, int]:
+    raise NotImplementedError
+
+
+IN_PYTHON = SolverOfFunctions('exact', engine.start, engine.advance, engine.set_inputs, engine.set_parameters,
+                              engine.set_load, engine.sample, records=PLAIN, walk=PieceWalk(Pieces, _enter, _never))
 START = 0.0, 0.0, math.inf, 0.0, 0.0   # those of InitialState()
 Bits = list[tuple[float, ...]]
 
@@ -143,7 +158,7 @@ def test_plain_python_gives_the_same_bits(in_a_process: Program) -> None:
         line for kind in KINDS for line in run_in(kind, 3)]
 
 
-@pytest.mark.parametrize('solver', [exact.SOLVER, ONE_BY_ONE], ids=['walk', 'one by one'])
+@pytest.mark.parametrize('solver', [exact.SOLVER, ONE_BY_ONE, IN_PYTHON], ids=['walk', 'one by one', 'in Python'])
 @pytest.mark.parametrize('room', [1, 2, 3, 64])
 def test_a_table_that_fills_in_mid_walk_loses_no_event(solver: Solver, room: int) -> None:
     simulator = make('plain')

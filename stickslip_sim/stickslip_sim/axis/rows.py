@@ -20,10 +20,12 @@ class GivenSinusoid:
     n: float = 0.0           # N, amplitude in the normal force
 
 
+@dataclass(slots=True, init=False)
 class Sinusoids:
     """Sinusoids as they are given to a solver, from a flat row of their numbers."""
 
-    __slots__ = ('count', 'rows')
+    count: int
+    rows: list[GivenSinusoid]
 
     def __init__(self, numbers: Sequence[float]) -> None:
         size = len(GIVEN_SINUSOID_FIELDS)
@@ -49,10 +51,12 @@ class EventRow:
     rest: float = 0.0          # s
 
 
+@dataclass(slots=True, init=False)
 class Events:
     """A table of events."""
 
-    __slots__ = ('count', 'rows')
+    count: int
+    rows: list[EventRow]
 
     def __init__(self, count: int) -> None:
         self.count, self.rows = count, [EventRow() for _ in range(count)]

@@ -34,8 +34,7 @@ def entry(function: _Function) -> _Function:
     """Return the machine code of a function of the hot path that Python calls; where there is none, the function."""
     if UNIT is None:
         return function
-    inside = function.__module__.removeprefix(f'{_PACKAGE}.').replace('.', '_')
-    found: _Function = getattr(UNIT, f'{inside}_{function.__name__}')
+    found: _Function = getattr(UNIT, f'{function.__module__.rpartition(".")[2]}_{function.__name__}')
     return found
 
 

@@ -203,6 +203,7 @@ def direct_root(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion,
     t = s.cache.last[0]
     if t <= begin:
         t = begin + room / abs(rate)
+    settled, fall = False, -1.0
     for _ in range(_DIRECT_STEPS):
         s.iterations += 1.0
         value, fall, bow = _guard_at(p, s, osc, t, side)
@@ -214,8 +215,9 @@ def direct_root(p: Parameters, s: State, osc: Oscillator, motion: ContactMotion,
         if t <= begin:
             return 0.0
         if sharpness < 0.5 and halley_settles(abs(step), sharpness, t):
+            settled = True
             break
-    else:
+    if not settled:
         return 0.0
     before = t + 4.0 * size * math.exp(-decay * (t - begin)) / fall
     if before <= begin:

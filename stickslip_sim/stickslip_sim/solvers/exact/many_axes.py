@@ -23,11 +23,10 @@ from ...axis.fields import numbers_in
 from ...axis.layout import Parameters
 from ...axis.rows import EventRow, Events, SampleRow, Sinusoids
 from ...axis.state_record import State
-from ...core.hot_path import compiled
+from ...core.hot_path import compiled, inlined
 from .. import DONE, FULL
 from .axis_figures import FIGURE_NAMES, ROUND_SIZE, AxisFigures, KeptRound, KeptRounds
-from .engine import advance, set_inputs, start
-from .engine import sample as read
+from .engine import advance, sample, set_inputs, start
 from .soundness import is_sound
 
 SETTLED = 1e-6       # relative change of the period from one cycle to the next
@@ -44,28 +43,36 @@ def run_axes(parameters: Any, inputs: Any, starts: Any, duration: float, first: 
     Pauses between sticks count in the second half alone.  `s` is a state that keeps the account of energy, `p` room for
     the parameters of an axis.
     """
-    second = math.floor(duration)
-    fraction = duration - second
     size = len(FIGURE_NAMES)
     for i in range(first, last):
         a = AxisFigures(*map(float, out[i, :size]))
         latest = [KeptRound(*map(float, kept)) for kept in out[i, size:].reshape(-1, ROUND_SIZE)]
-        p = Parameters(parameters[i].tolist())
         position, velocity, rest, stretch, deflection = map(float, starts[i])
         v, f = map(float, inputs[i])
-        rows = start(p, s, position, velocity, rest, stretch, deflection, v, 0.0, f, 0.0, sinusoids, events, 0)
-        a.final_mode = STICK if rows > 0 else s.mode
-        ended = FULL
-        while ended == FULL:
-            rows, ended = advance(p, s, second, fraction, events, rows)
-            for k in range(rows):
-                book(a, latest, len(latest), events.rows[k], 0.5 * duration)
-            rows = 0
-        if a.final_mode == STICK:
-            a.stick_share += (second - a.since_second) + (fraction - a.since_fraction)
-        a.stick_share /= duration
-        a.complete = 1.0 if ended == DONE and is_sound(p, s, second, fraction) else 0.0
+        run_axis(Parameters(parameters[i].tolist()), s, position, velocity, rest, stretch, deflection, v, f, duration,
+                 sinusoids, events, a, latest, len(latest))
         out[i] = list(numbers_in([a, latest]))
+
+
+@compiled
+def run_axis(p: Parameters, s: State, position: float, velocity: float, rest: float, stretch: float, deflection: float,
+             v: float, f: float, duration: float, sinusoids: Sinusoids, events: Events, a: AxisFigures,
+             latest: KeptRounds, kept: int) -> None:
+    """Run one of the axes, which begins as an `InitialState`, under constant inputs."""
+    second = float(math.floor(duration))
+    fraction = duration - second
+    rows = start(p, s, position, velocity, rest, stretch, deflection, v, 0.0, f, 0.0, sinusoids, events, 0)
+    a.final_mode = STICK if rows > 0 else s.mode
+    ended = FULL
+    while ended == FULL:
+        rows, ended = advance(p, s, second, fraction, events, rows)
+        for k in range(rows):
+            book(a, latest, kept, events.rows[k], 0.5 * duration)
+        rows = 0
+    if a.final_mode == STICK:
+        a.stick_share += (second - a.since_second) + (fraction - a.since_fraction)
+    a.stick_share /= duration
+    a.complete = 1.0 if ended == DONE and is_sound(p, s, second, fraction) else 0.0
 
 
 def step_axes(parameters: Any, states: Any, tables: Any, from_second: float, from_fraction: float, second: float,
@@ -78,25 +85,34 @@ def step_axes(parameters: Any, states: Any, tables: Any, from_second: float, fro
     at the `step` the samples unless it is None, `counts` the events of each.  Those that are not `alive` are left out;
     one whose solver gives up, whose table is full or whose state leaves the range of numbers no longer is.
     """
-    sample = SampleRow()
+    told_by = SampleRow()
     for i in range(len(alive)):
         counts[i] = 0
         if not alive[i]:
             continue
-        p, s, events, rows = parameters[i], states[i], tables[i], 0
-        if commanded:
-            rows = set_inputs(p, s, from_second, from_fraction, float(velocities[i]), 0.0, float(forces[i]), 0.0,
-                              sinusoids, events, 0)
-        rows, ended = advance(p, s, second, fraction, events, rows)
-        read(p, s, second, fraction, sample)
-        told[:, i] = (sample.position, sample.velocity, sample.drive, sample.drive_velocity,
-                      sample.drive_force)
-        row = sample.tolist()
+        counts[i], alive[i] = step_axis(
+            parameters[i], states[i], from_second, from_fraction, second, fraction, float(velocities[i]),
+            float(forces[i]), commanded, sinusoids, tables[i], told_by)
+        told[:, i] = (told_by.position, told_by.velocity, told_by.drive, told_by.drive_velocity,
+                      told_by.drive_force)
         if history is not None:
-            history[i, step] = row
-        alive[i] = ended == DONE and math.isfinite(sum(row[4:12]))
-        counts[i] = rows
+            history[i, step] = told_by.tolist()
     return int(counts.sum())
+
+
+@inlined
+def step_axis(p: Parameters, s: State, from_second: float, from_fraction: float, second: float, fraction: float,
+              velocity: float, force: float, commanded: bool, sinusoids: Sinusoids, events: Events, out: SampleRow
+              ) -> tuple[int, bool]:
+    """Bring one of the axes through a step; return the rows of events, and whether it goes on."""
+    row = 0
+    if commanded:
+        row = set_inputs(p, s, from_second, from_fraction, velocity, 0.0, force, 0.0, sinusoids, events, 0)
+    row, ended = advance(p, s, second, fraction, events, row)
+    sample(p, s, second, fraction, out)
+    size = (out.position + out.velocity + out.acceleration + out.drive + out.drive_velocity + out.drive_force
+            + out.external + out.friction)
+    return row, ended == DONE and size - size == 0.0
 
 
 @compiled

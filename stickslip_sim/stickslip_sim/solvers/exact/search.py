@@ -45,11 +45,11 @@ def find_event(p: Parameters, s: State, due: float) -> None:
     """
     wait = delay_left(p, s) if s.mode == STICK else 0.0
     if wait == 0.0:
-        _find_event(p, s, due)
+        _find_at_once(p, s, due)
         return
     rest = s.rest
     s.rest = -math.inf
-    _find_event(p, s, wait)
+    _find_at_once(p, s, wait)
     s.rest = rest
     s.next.searched = math.inf
     if s.next.time > wait:
@@ -59,7 +59,7 @@ def find_event(p: Parameters, s: State, due: float) -> None:
 
 
 @inlined
-def _find_event(p: Parameters, s: State, due: float) -> None:
+def _find_at_once(p: Parameters, s: State, due: float) -> None:
     if moves_by_series(s):
         series_event(p, s)
         return

@@ -1,0 +1,124 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""The engine as one file of plain C with its header, and an example of a scene: for any program that is not Python."""
+
+import inspect
+import re
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from ..axis import pack
+from ..axis.fields import names_of
+from ..axis.layout import PARAMETER_FIELDS, SEGMENT_FIELDS, Parameters, Segment
+from ..axis.rows import EnergyRow, EventRow, GivenSinusoid, SampleRow
+from ..core.errors import InputError
+from ..core.hot_path import UNIT, hot_path
+from ..core.input_profile import InputProfile
+from ..core.types import EventKind, Mode
+from ..core.version import __version__
+from ..scene import Scene
+from ..simulation.inputs import Inputs, LoadedInputs
+
+NAMES = 'stickslip_axis.c', 'stickslip_axis.h', 'example.c'
+_HERE = Path(__file__).parent
+
+
+def c_files(scene: Scene, duration: float) -> dict[str, str]:
+    """Return the texts of the three files, by name; raises InputError where plain Python runs."""
+    if UNIT is None:
+        raise InputError('hot path', hot_path(), 'compiled: it carries its C',
+                         'build the package with a C compiler, and leave STICKSLIP_COMPILED=0 out')
+    engine: str = zlib.decompress(UNIT.ENGINE).decode()
+    return {'stickslip_axis.c': engine + _text('stickslip_axis.c'),
+            'stickslip_axis.h': _filled('stickslip_axis.h', _header()),
+            'example.c': _filled('example.c', _example(scene, duration))}
+
+
+def _header() -> dict[str, Any]:
+    notes = _notes(Parameters)
+    return {
+        'VERSION': __version__, 'SEGMENT_SIZE': len(SEGMENT_FIELDS),
+        'SEGMENTS': ';\n   '.join(f'{name}: {_notes(Segment)[name]}' for name in SEGMENT_FIELDS),
+        'PARAMETERS': '\n'.join(f'    AXIS_{name.upper()},   /* {notes[name]} */' for name in PARAMETER_FIELDS),
+        'MODES': ''.join(f', AXIS_{mode.name}' for mode in sorted(Mode)[1:]),
+        'KINDS': ''.join(f', AXIS_{"ARREST" if kind.name == "STICK" else kind.name}' for kind in sorted(EventKind)[1:]),
+        'SINUSOID': _fields(GivenSinusoid), 'EVENT': _fields(EventRow), 'SAMPLE': _fields(SampleRow),
+        'ENERGY': _fields(EnergyRow),
+    }
+
+
+def _example(scene: Scene, duration: float) -> dict[str, Any]:
+    numbers, load = pack(scene.axis), scene.normal_load
+    normal = None if load is None else load.plus(scene.axis.normal_force)
+    inputs = Inputs(scene.drive, scene.force) if load is None else LoadedInputs(scene.drive, scene.force, load)
+    flat = inputs.sinusoids()
+    rows = [flat[i:i + 5] for i in range(0, len(flat), 5)]
+    arrays, words = list[str](), dict[str, str]()
+    for name, profile in (('drive', scene.drive), ('force', scene.force), ('normal', normal)):
+        words[name.upper()] = '{0}' if profile is None else _profile(name, profile, arrays)
+    if rows:
+        arrays.append(f'static const axis_sinusoid sinusoids[] = {{{", ".join(f"{{{_row(row)}}}" for row in rows)}}};')
+    initial = scene.initial
+    return {
+        'NAME': scene.name, 'VERSION': __version__, 'DURATION': _number(duration),
+        'PARAMETERS': '\n'.join([
+            *(f'    [AXIS_{name.upper()}] = {_number(number)},   /* {_notes(Parameters)[name]} */'
+              for name, number in zip(PARAMETER_FIELDS, numbers, strict=False)),
+            *(f'    {_row(numbers[i:i + len(SEGMENT_FIELDS)])},'
+              for i in range(len(PARAMETER_FIELDS), len(numbers), len(SEGMENT_FIELDS)))]),
+        'ARRAYS': '\n'.join(['', *arrays, '']) if arrays else '',
+        'VARIES': 'true' if normal else 'false', 'COUNT': len(rows), 'SINUSOIDS': 'sinusoids' if rows else 'NULL',
+        'INITIAL': _row([initial.position, initial.velocity, initial.rest_time, initial.stretch, initial.deflection]),
+        **words}
+
+
+def _profile(name: str, of: InputProfile, arrays: list[str]) -> str:
+    """Return an input in C; one of more pieces than one adds its arrays."""
+    if len(of.starts) == 1 and of.period == float('inf'):
+        return f'{{.value = {_number(of.values[0])}, .rate = {_number(of.rates[0])}}}'
+    for what, row in (('starts', of.starts), ('values', of.values), ('rates', of.rates)):
+        arrays.append(f'static const double {name}_{what}[] = {{{_row(row)}}};')
+    return (f'{{.count = {len(of.starts)}, .starts = {name}_starts, .values = {name}_values, .rates = {name}_rates, '
+            f'.period = {_number(of.period)}}}')
+
+
+def _fields(record: type[Any]) -> str:
+    notes = _notes(record)
+    return '\n'.join(f'    double {"static_" if name == "static" else name};{_as_comment(notes.get(name, ""))}'
+                     for name in names_of(record))
+
+
+def _as_comment(note: str) -> str:
+    return f'   /* {note} */' if note else ''
+
+
+def _notes(record: type[Any]) -> dict[str, str]:
+    """Return what the source says of each field, in characters of C."""
+    found = re.findall(r'^    (\w+): float\b[^#\n]*(?:# *(.*))?$', inspect.getsource(record), re.MULTILINE)
+    return {name: note.rstrip(',').replace('`', '').replace('²', '^2') for name, note in found}
+
+
+def _row(numbers: Any) -> str:
+    return ', '.join(map(_number, numbers))
+
+
+def _number(number: float) -> str:
+    return {'inf': 'INFINITY', '-inf': '-INFINITY'}.get(repr(float(number)), repr(float(number)))
+
+
+def _text(name: str) -> str:
+    return (_HERE / name).read_text(encoding='utf-8')
+
+
+def _filled(name: str, words: dict[str, Any]) -> str:
+    return Template(_text(name)).substitute(words)
+
+
+def written(folder: Path, scene: Scene, duration: float) -> Iterator[Path]:
+    """Write the files into a folder; yield their paths."""
+    for name, text in c_files(scene, duration).items():
+        (folder / name).write_text(text, encoding='utf-8')
+        yield folder / name
