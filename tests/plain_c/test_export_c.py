@@ -4,6 +4,7 @@
 
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -72,10 +73,10 @@ def exported(folder: Path, scene: str, changes: dict[str, Any]) -> Path:
     return folder
 
 
-def printed(folder: Path, *sources: str) -> str:
+def printed(folder: Path, *sources: str, compiler: Sequence[str] = ('cc',), runner: Sequence[str] = ()) -> str:
     """Return what a program prints, compiled without a warning."""
-    subprocess.run(['cc', *WARNINGS, *sources, 'stickslip_axis.c', '-lm', '-o', 'program'], cwd=folder, check=True)
-    return subprocess.run([folder / 'program'], capture_output=True, text=True, check=True, timeout=60).stdout
+    subprocess.run([*compiler, *WARNINGS, *sources, 'stickslip_axis.c', '-lm', '-o', 'program'], cwd=folder, check=True)
+    return subprocess.run([*runner, folder / 'program'], capture_output=True, text=True, check=True, timeout=60).stdout
 
 
 @pytest.mark.parametrize(('scene', 'changes'), [
@@ -94,6 +95,19 @@ def test_the_example_has_the_bits_of_the_engine(scene: str, changes: dict[str, A
     assert energy is not None
     assert tuple(map(float.fromhex, lines[-1].split()[1:])) == (sample.position, sample.velocity, sample.drive_force,
                                                                 energy.stored)
+
+
+@pytest.mark.parametrize(('compiler', 'runner'), [
+    (('clang', '-O2'), ()), (('clang', '-O2', '-march=native'), ()),
+    (('aarch64-linux-gnu-gcc', '-O2', '-ffp-contract=off'), ('qemu-aarch64', '-L', '/usr/aarch64-linux-gnu'))],
+    ids=['clang', 'with contractions', 'aarch64'])
+def test_other_compilers_and_processors_have_the_same_bits(compiler: Sequence[str], runner: Sequence[str],
+                                                           tmp_path: Path) -> None:
+    missing = [name for name in (compiler[0], *runner[:1]) if shutil.which(name) is None]
+    if missing:
+        pytest.skip(f'not installed: {", ".join(missing)}')
+    folder = exported(tmp_path / 'c', 'paper_fig7', SINES)
+    assert printed(folder, 'example.c', compiler=compiler, runner=runner) == printed(folder, 'example.c')
 
 
 def test_what_is_wrong_has_a_code_and_a_state_goes_on_in_another_axis(tmp_path: Path) -> None:
