@@ -6,7 +6,7 @@ import os
 import resource
 import signal
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -60,10 +60,10 @@ class NodeProcess:
     """
 
     def __init__(self, *words: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
-                 program: str = 'sim_node', afresh: bool = False) -> None:
+                 program: str = 'sim_node', afresh: bool = False, options: Sequence[str] = ()) -> None:
         self.code: int | None = None
         self.errors = ''
-        self._process = ForkedProgram(program, *ros_args(*words), folder=folder, prepare=prepare,
+        self._process = ForkedProgram(program, *options, *ros_args(*words), folder=folder, prepare=prepare,
                                       path=executable(program) if afresh else '')
         self.pid = self._process.pid
         self.waits = CoreWaits(self.pid)
@@ -104,8 +104,8 @@ def assert_clean(code: int, errors: str) -> None:
 
 @contextmanager
 def running(*words: str, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
-            program: str = 'sim_node', afresh: bool = False) -> Iterator[NodeProcess]:
-    process = NodeProcess(*words, folder=folder, prepare=prepare, program=program, afresh=afresh)
+            program: str = 'sim_node', afresh: bool = False, options: Sequence[str] = ()) -> Iterator[NodeProcess]:
+    process = NodeProcess(*words, folder=folder, prepare=prepare, program=program, afresh=afresh, options=options)
     try:
         yield process
     finally:

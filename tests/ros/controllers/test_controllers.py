@@ -24,6 +24,7 @@ from stickslip_sim.controllers import Moves
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.ros import lock_step
 from stickslip_sim.ros.controllers.controller_node import measurement
 from stickslip_sim.ros.node.joints import JointNames
 from stickslip_sim.scene.values import scene_text
@@ -99,6 +100,38 @@ def test_one_that_fails_in_real_time_stops_the_drive(tmp_path: Path) -> None:
         _, errors = process.communicate(DEADLINE)
         assert process.poll() == 2
         assert 'controller_node: fails raised RuntimeError: lost (mine.py, line 3), asked after step ' in errors
+        axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
+
+
+def impatient() -> None:
+    """Let a controller in lock-step wait a second for an answer, not ten: for `prepare`."""
+    lock_step._PATIENCE = 1.0
+
+
+def test_a_killed_axis_ends_its_controller_in_lock_step(tmp_path: Path) -> None:
+    """It asks on for a while, since a network may lose an answer, then says so and ends."""
+    (tmp_path / 'mine.py').write_text("""import os
+def mine(t, measured):
+    open('asked', 'w').close()
+    return 0.002
+""")
+    with running(*BENCH, 'time.mode:=lockstep') as axis:
+        process = ForkedProgram('controller_node', '--controller', f'{tmp_path}/mine.py:mine', folder=tmp_path,
+                                prepare=impatient)
+        wait_for((tmp_path / 'asked').exists, 'the first step')
+        axis.end(signal.SIGKILL)
+        _, errors = process.communicate(DEADLINE)
+    assert (process.poll(), errors.splitlines()[-1]) == (
+        1, 'controller_node: /feed_axis does not answer any more: has it ended?')
+
+
+def test_the_watchdog_stops_the_drive_of_a_killed_controller(tmp_path: Path) -> None:
+    (tmp_path / 'mine.py').write_text('def mine(t, measured):\n    return 0.002\n')
+    with live_axis(*BENCH, 'command.timeout:=0.2', 'command.on_timeout:=ramp_to_zero') as (_, axis):
+        process = ForkedProgram('controller_node', '--controller', f'{tmp_path}/mine.py:mine')
+        axis.next('slider_state', lambda state: state.drive_velocity == 0.002)
+        process.kill()
+        process.communicate()
         axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
 
 
