@@ -14,7 +14,7 @@ SHELL := /bin/bash
 HERE := ros2_ws/on_this_machine
 TOOLS := ros2_ws/.venv/bin
 
-.PHONY: help build run test check extremes bench identify hil soak fuzz hostile goldens mutants timings pages docs clean
+.PHONY: help build run test check extremes bench identify hil soak cnc fuzz hostile goldens mutants timings pages docs clean
 
 help:  ## list the targets
 	@sed -nE 's/^([a-z]+):.*## (.*)/make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 14
@@ -58,6 +58,9 @@ hil: build  ## the node with a controller beside it: against a bare rclpy node, 
 
 soak: build  ## the node, recording, with a controller beside it for MINUTES=10; writes docs/, fails when a limit is missed
 	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.soak --minutes $(MINUTES)
+
+cnc: tools  ## two axes under LinuxCNC's own motion and PID: a circle's figures; says so where LinuxCNC is not installed
+	@$(HERE) python3 -m dev.cnc
 
 fuzz: tools  ## made-up files and runs for MINUTES=10; fails when one is not read or refused in one line, or runs wrong
 	@$(HERE) python3 -m tests.fuzz --minutes $(MINUTES)

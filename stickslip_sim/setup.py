@@ -79,7 +79,8 @@ setup(
     maintainer_email='stickslip@example.org',
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
-    package_data={NAME: ['py.typed', 'scenes/*.yaml', 'bags/stickslip_msgs/*.msg', 'ros/*.xml', 'plain_c/*.[ch]']},
+    package_data={NAME: ['py.typed', 'scenes/*.yaml', 'bags/stickslip_msgs/*.msg', 'ros/*.xml', 'plain_c/*.[ch]',
+                         'plain_c/*.comp']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),

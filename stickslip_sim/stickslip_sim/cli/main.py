@@ -24,7 +24,7 @@ _SECTIONS = {   # each verb by what a reader wants, as in the help: its function
             'close-loop': 'close_loop.close_loop', 'tune': 'tune.tune', 'import': 'import_.import_',
             'call': 'call.call'},
     'Look': {'plot': 'plot.plot', 'compare': 'compare.compare', 'export': 'export.export',
-             'export-c': 'export_c.export_c'},
+             'export-c': 'export_c.export_c', 'export-hal': 'export_hal.export_hal'},
     'Check': {'check': 'check.check', 'verify': 'verify.verify'},
     'Study': {'critical': 'critical.critical', 'sweep': 'sweep.sweep', 'map': 'map.map_',
               'uncertainty': 'uncertainty.uncertainty'},

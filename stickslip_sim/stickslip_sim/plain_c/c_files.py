@@ -33,8 +33,8 @@ def c_files(scene: Scene, duration: float) -> dict[str, str]:
                          'build the package with a C compiler, and leave STICKSLIP_COMPILED=0 out')
     engine: str = zlib.decompress(UNIT.ENGINE).decode()
     return {'stickslip_axis.c': engine + _text('stickslip_axis.c'),
-            'stickslip_axis.h': _filled('stickslip_axis.h', _header()),
-            'example.c': _filled('example.c', _example(scene, duration))}
+            'stickslip_axis.h': filled('stickslip_axis.h', _header()),
+            'example.c': filled('example.c', _example(scene, duration))}
 
 
 def _header() -> dict[str, Any]:
@@ -60,18 +60,18 @@ def _example(scene: Scene, duration: float) -> dict[str, Any]:
     for name, profile in (('drive', scene.drive), ('force', scene.force), ('normal', normal)):
         words[name.upper()] = '{0}' if profile is None else _profile(name, profile, arrays)
     if rows:
-        arrays.append(f'static const axis_sinusoid sinusoids[] = {{{", ".join(f"{{{_row(row)}}}" for row in rows)}}};')
+        arrays.append(f'static const axis_sinusoid sinusoids[] = {{{", ".join(f"{{{c_row(row)}}}" for row in rows)}}};')
     initial = scene.initial
     return {
         'NAME': scene.name, 'VERSION': __version__, 'DURATION': _number(duration),
         'PARAMETERS': '\n'.join([
             *(f'    [AXIS_{name.upper()}] = {_number(number)},   /* {_notes(Parameters)[name]} */'
               for name, number in zip(PARAMETER_FIELDS, numbers, strict=False)),
-            *(f'    {_row(numbers[i:i + len(SEGMENT_FIELDS)])},'
+            *(f'    {c_row(numbers[i:i + len(SEGMENT_FIELDS)])},'
               for i in range(len(PARAMETER_FIELDS), len(numbers), len(SEGMENT_FIELDS)))]),
         'ARRAYS': '\n'.join(['', *arrays, '']) if arrays else '',
         'VARIES': 'true' if normal else 'false', 'COUNT': len(rows), 'SINUSOIDS': 'sinusoids' if rows else 'NULL',
-        'INITIAL': _row([initial.position, initial.velocity, initial.rest_time, initial.stretch, initial.deflection]),
+        'INITIAL': c_row([initial.position, initial.velocity, initial.rest_time, initial.stretch, initial.deflection]),
         **words}
 
 
@@ -80,7 +80,7 @@ def _profile(name: str, of: InputProfile, arrays: list[str]) -> str:
     if len(of.starts) == 1 and of.period == float('inf'):
         return f'{{.value = {_number(of.values[0])}, .rate = {_number(of.rates[0])}}}'
     for what, row in (('starts', of.starts), ('values', of.values), ('rates', of.rates)):
-        arrays.append(f'static const double {name}_{what}[] = {{{_row(row)}}};')
+        arrays.append(f'static const double {name}_{what}[] = {{{c_row(row)}}};')
     return (f'{{.count = {len(of.starts)}, .starts = {name}_starts, .values = {name}_values, .rates = {name}_rates, '
             f'.period = {_number(of.period)}}}')
 
@@ -101,7 +101,8 @@ def _notes(record: type[Any]) -> dict[str, str]:
     return {name: note.rstrip(',').replace('`', '').replace('²', '^2') for name, note in found}
 
 
-def _row(numbers: Any) -> str:
+def c_row(numbers: Any) -> str:
+    """Return numbers as they stand in an array of C."""
     return ', '.join(map(_number, numbers))
 
 
@@ -113,7 +114,8 @@ def _text(name: str) -> str:
     return (_HERE / name).read_text(encoding='utf-8')
 
 
-def _filled(name: str, words: dict[str, Any]) -> str:
+def filled(name: str, words: dict[str, Any]) -> str:
+    """Return a template of this room with its words filled in."""
     return Template(_text(name)).substitute(words)
 
 

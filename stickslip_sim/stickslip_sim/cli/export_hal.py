@@ -1,0 +1,27 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip export-hal`: the axis as a component of LinuxCNC."""
+
+import click
+
+from . import completion
+from .arguments import SceneChanges, scene_changes, verb
+from .files import FOLDER, new_folder, say_written
+
+
+@verb(short_help='Write the axis as a component of LinuxCNC.')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@click.option('--out', type=FOLDER, required=True, metavar='DIR', help='New folder of the component.')
+@scene_changes('Change a parameter of the scene.')
+def export_hal(scene: str, out: str, changes: SceneChanges) -> None:
+    """Write stickslip.comp, and the engine that it includes, into DIR: for halcompile (docs/linuxcnc.md).
+
+    The pin velocity is the drive; the profile of the scene's drive is left out.
+    """
+    from ..plain_c.hal_files import hal_files
+
+    texts = hal_files(changes.load(scene))
+    with new_folder('--out', out) as folder:
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding='utf-8')
+    say_written(out)
