@@ -85,7 +85,7 @@ docs: tools  ## the pages in docs/ as a site in runs/docs/
 
 clean:  ## remove everything that was set up, built or cached in this tree
 	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
-	rm -rf stickslip_sim/build stickslip_sim/stickslip_sim/_hot.* stickslip_sim/stickslip_sim/_{text,standstill}.*
+	rm -rf stickslip_sim/build stickslip_sim/stickslip_sim/_hot.* stickslip_sim/stickslip_sim/_{text,standstill,fmu}.*
 	find . -name __pycache__ -prune -exec rm -rf {} +
 
 .PHONY: tools

@@ -19,6 +19,9 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 OLDEST = (3, 10)
 NEWER = '3.11'   # that some of the benchmark's peers need
+# What FMPy asks for and is not installed: lark is the same module as lark-parser, which the ROS wheels have, and FMPy
+# runs with; cmake would take the place of the machine's.
+LEFT_OUT = {'lark', 'cmake'}
 
 
 def resolve(*wanted: str) -> set[str]:
@@ -44,6 +47,7 @@ def resolve_for_newer(requirements: pathlib.Path, beside: pathlib.Path, known: s
 def write(path: pathlib.Path, pins: set[str]) -> None:
     """Write a lock, sorted, with a line that says where it comes from."""
     head = f'# Full lock of {path.stem}.in; made by lock.py, not by hand.'
+    pins = {pin for pin in pins if pin.partition('==')[0] not in LEFT_OUT}
     path.write_text('\n'.join([head, *sorted(pins)]) + '\n')
     print(f'{path.name}: {len(pins)} packages')
 

@@ -26,6 +26,7 @@ FLAGS = ['-O3', '-g0', '-ffp-contract=off', '-fno-math-errno', '-fno-trapping-ma
 
 # What the package also runs without.  `text` needs a compiler of C++ that knows std::to_chars of floats; else Python
 # writes the numbers.
+_FMU_FLAGS = ['-Os', '-g0', '-ffp-contract=off', '-fno-math-errno', '-fno-trapping-math', '-fvisibility=hidden']
 _OTHERS = {'_text': 'cli/text.pyx', '_standstill': 'ros/standstill.pyx'}
 
 
@@ -34,6 +35,8 @@ def extensions() -> list[Extension]:
     if os.environ.get(SWITCH) == '0':
         return []
     return [Extension(f'{PACKAGE}._hot', [], extra_compile_args=FLAGS),
+            Extension(f'{PACKAGE}._fmu', [], extra_compile_args=_FMU_FLAGS, extra_link_args=['-s'], libraries=['m'],
+                      optional=True),
             Extension(f'{PACKAGE}._text', [], extra_compile_args=['-O2', '-g0', '-std=c++17'], language='c++',
                       optional=True),
             Extension(f'{PACKAGE}._standstill', [], extra_compile_args=['-O2', '-g0'], optional=True)]
@@ -46,18 +49,20 @@ class BuildUnit(build_ext):  # type: ignore[misc]
         """Write the unit and build it; raises SetupError, one line that says what to install or to change."""
         _require_cython()
         _require_compiler(self.compiler.compiler_so[0])
-        ext.sources = [self._written(ext.name.rpartition('.')[2])]
+        ext.sources = self._written(ext.name.rpartition('.')[2])
         super().build_extension(ext)
 
-    def _written(self, name: str) -> str:
-        """Write an extension in Cython, and what it includes; raises SetupError."""
+    def _written(self, name: str) -> list[str]:
+        """Write an extension in Cython or C, and what it includes; raises SetupError."""
         package = Path(__file__).resolve().parents[1] / PACKAGE
         if name in _OTHERS:
-            return self._write(f'{name}.pyx', (package / _OTHERS[name]).read_text(encoding='utf-8'))
+            return [self._write(f'{name}.pyx', (package / _OTHERS[name]).read_text(encoding='utf-8'))]
         try:
             unit = Unit(package)
+            if name == '_fmu':
+                return [self._write(file, text) for file, text in unit.fmu(package).items()][1:]
             self._write('engine.c', unit.text(ENTRIES | LOOPS))
-            return self._write(f'{name}.pyx', unit.wrapper('engine.c'))
+            return [self._write(f'{name}.pyx', unit.wrapper('engine.c'))]
         except UnitError as error:
             raise SetupError(str(error)) from None
 

@@ -114,6 +114,21 @@ class Unit:
             parts += [f'\n{one.text}' for one in group]
         return '\n'.join(parts) + '\n'
 
+    def fmu(self, package: Path) -> dict[str, str]:
+        """Return the header of the engine in C, without the notes for its readers, and the two sources of an FMU."""
+        header, axis, fmu = (
+            (package / name).read_text(encoding='utf-8')
+            for name in ('plain_c/stickslip_axis.h', 'plain_c/stickslip_axis.c', 'fmu/stickslip_fmu.c'))
+        words = dict.fromkeys(('VERSION', 'SEGMENT_SIZE', 'SEGMENTS', 'MODES', 'KINDS'), '')
+        records = self.kinds.records
+        for name, record in (('SINUSOID', 'GivenSinusoid'), ('EVENT', 'EventRow'), ('SAMPLE', 'SampleRow'),
+                             ('ENERGY', 'EnergyRow')):
+            words[name] = ''.join(f'double {"static_" if field == "static" else field};' for field in records[record])
+        words['PARAMETERS'] = ''.join(f'AXIS_{field.upper()},' for field, kind in records['Parameters'].items()
+                                      if isinstance(kind, str))
+        return {'stickslip_axis.h': Template(header).substitute(words),
+                'stickslip_axis.c': self.text(EXPORTED) + axis, 'stickslip_fmu.c': fmu}
+
     def wrapper(self, include: str) -> str:
         """Return the Cython of the entries and of the classes that they work on, around the C of a file."""
         words = {**self._record_words(), 'SOURCES': repr(tuple(self.names)), 'DIGEST': self.digest, 'FILE': include,

@@ -8,8 +8,10 @@
 
 enum {
     AXIS_STATE = offsetof(State, sinusoids) / sizeof(double), AXIS_SEGMENT = sizeof(Segment) / sizeof(double),
-    AXIS_SINUSOID = sizeof(SinusoidRecord) / sizeof(double), AXIS_OWN = 5
+    AXIS_SINUSOID = sizeof(SinusoidRecord) / sizeof(double), AXIS_OWN = 5,
+    AXIS_MOST_AT_ONCE = 100000    /* events within so many seconds that time is said not to go on: */
 };
+#define AXIS_AT_ONCE 0.01
 _Static_assert(offsetof(Parameters, segments) == AXIS_PARAMETERS * sizeof(double), "parameters");
 _Static_assert(sizeof(axis_event) == sizeof(EventRow) && sizeof(axis_sample_row) == sizeof(SampleRow)
                && sizeof(axis_energy_row) == sizeof(EnergyRow), "rows");
@@ -25,7 +27,8 @@ struct axis {
     axis_inputs inputs;
     double second, fraction, until, constant_normal_force;
     size_t segments, most;
-    long rows;
+    long rows, crowd;                /* events since time last went on, and where that was */
+    double crowd_second, crowd_fraction;
     bool accounting;
 };
 
@@ -197,7 +200,8 @@ int axis_start(axis *a, const axis_start_state *initial, const axis_inputs *inpu
         return AXIS_BAD_STATE;
     }
     axis_take_inputs(a, inputs);
-    a->second = a->fraction = 0.0;
+    a->second = a->fraction = a->crowd_second = a->crowd_fraction = 0.0;
+    a->crowd = 0;
     a->state.accounting = a->accounting ? 1.0 : 0.0;
     a->until = axis_read_inputs(a, 0.0, &v, &f, &n);
     a->parameters.normal_force = n.item0;
@@ -208,11 +212,16 @@ int axis_start(axis *a, const axis_start_state *initial, const axis_inputs *inpu
     return AXIS_OK;
 }
 
+static bool axis_comes(const axis *a, double second, double fraction)
+{
+    return isfinite(second) && second == floor(second) && fraction >= 0.0 && fraction < 1.0
+        && (second > a->second || (second == a->second && fraction >= a->fraction));
+}
+
 int axis_advance(axis *a, double second, double fraction)
 {
     a->rows = 0;
-    if (!(isfinite(second) && second == floor(second) && fraction >= 0.0 && fraction < 1.0)
-        || second < a->second || (second == a->second && fraction < a->fraction)) {
+    if (!axis_comes(a, second, fraction)) {
         return AXIS_BAD_TIME;
     }
     if (a->until <= second + fraction) {
@@ -231,6 +240,47 @@ int axis_advance(axis *a, double second, double fraction)
         a->fraction = fraction;
     }
     return (int)ended.item1;
+}
+
+int axis_advance_to_event(axis *a, double second, double fraction)
+{
+    a->rows = 0;
+    if (second + fraction == axis_time(a)) {    /* the same number: the present time may have more digits */
+        second = a->second;
+        fraction = a->fraction;
+    }
+    if (!axis_comes(a, second, fraction)) {
+        return AXIS_BAD_TIME;
+    }
+    bool is_there = false;
+    while (a->rows == 0 && !is_there) {
+        is_there = a->until > second + fraction;
+        double whole = is_there ? second : floor(a->until), rest = is_there ? fraction : a->until - whole;
+        Events one = {.count = 1, .rows = a->events.rows};
+        Long2 ended = engine_advance(&a->parameters, &a->state, whole, rest, &one, 0);
+        a->rows = ended.item0;
+        if (ended.item1 != AXIS_OK && ended.item1 != AXIS_FULL) {
+            return (int)ended.item1;
+        }
+        a->second = a->rows > 0 ? a->events.rows->second : whole;
+        a->fraction = a->rows > 0 ? a->events.rows->fraction : rest;
+        if ((a->second - a->crowd_second) + (a->fraction - a->crowd_fraction) > AXIS_AT_ONCE) {
+            a->crowd_second = a->second;
+            a->crowd_fraction = a->fraction;
+            a->crowd = 0;
+        }
+        a->crowd += a->rows;
+        if (a->crowd > AXIS_MOST_AT_ONCE) {
+            return AXIS_NO_PROGRESS;
+        }
+        if (a->rows == 0 && !is_there) {
+            DoubleLong2 entered = pieces_enter_pieces(&a->parameters, &a->state, &a->drive, &a->force, &a->normal, a->until,
+                                                      a->until, &a->sinusoids, &a->events, 0);
+            a->until = entered.item0;
+            a->rows = entered.item1;
+        }
+    }
+    return AXIS_OK;
 }
 
 int axis_set_inputs(axis *a, const axis_inputs *inputs)
@@ -347,8 +397,9 @@ int axis_set_state(axis *a, const double *numbers, size_t count)
     }
     memcpy(&a->state, numbers, AXIS_STATE * sizeof(double));
     memcpy(a->state.sinusoids, numbers + AXIS_STATE, a->most * sizeof(SinusoidRecord));
-    a->second = own[0];
-    a->fraction = own[1];
+    a->crowd_second = a->second = own[0];
+    a->crowd_fraction = a->fraction = own[1];
+    a->crowd = 0;
     a->until = own[2];
     a->parameters.normal_force = own[3];
     a->parameters.normal_rate = own[4];

@@ -96,11 +96,14 @@ typedef struct axis axis;
 axis *axis_new(const double *parameters, size_t count, size_t sinusoids, size_t events, bool accounting, int *code);
 void axis_free(axis *a);
 
-/* Begin at time 0.  Each of the four functions below writes the events that it brings over those of the call before. */
+/* Begin at time 0.  Each of the five functions below writes the events that it brings over those of the call before. */
 int axis_start(axis *a, const axis_start_state *initial, const axis_inputs *inputs);
 
 /* Go on to a time, which is not before the present one, through all pieces of the inputs. */
 int axis_advance(axis *a, double second, double fraction);
+
+/* Go on to the next event and stop there, or at a time if that is before. */
+int axis_advance_to_event(axis *a, double second, double fraction);
 
 /* Let other inputs be in force, or another axis of as many segments or fewer, from the present time on. */
 int axis_set_inputs(axis *a, const axis_inputs *inputs);
