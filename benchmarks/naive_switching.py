@@ -11,7 +11,7 @@ from typing import NamedTuple
 from stickslip_sim.axis import Axis
 from stickslip_sim.figures.cycles import cycle_figures
 from stickslip_sim.proof.axes import RIGID, paper_axis, run_events
-from stickslip_sim.report.markdown import markdown_table
+from stickslip_sim.report.text import markdown_table
 
 FEED = 0.002                   # m/s
 STEPS = 1e-4, 1e-5, 1e-6       # s

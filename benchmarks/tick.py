@@ -20,9 +20,9 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
 from stickslip_msgs.msg import FrictionForce, SliderState
-from stickslip_sim.bench.cases import make_case
 from stickslip_sim.bench.contestants import sinusoids_for, state_for
-from stickslip_sim.bench.ratios import at_most
+from stickslip_sim.bench.outside import at_most
+from stickslip_sim.bench.problem import make_case
 from stickslip_sim.solvers import exact
 
 MARK, AIM = 0.02, 0.005

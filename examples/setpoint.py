@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Follow a setpoint on the encoders: 10 mm in 1.4 s, then rest.
 
-The axis needs joint_interface.enabled; with time.mode lockstep its steps are made here (--lockstep).  The same class
-runs without ROS:
+The axis needs joint_interface.enabled; with time.mode lockstep its steps are made here.  The same class runs without
+ROS:
 stickslip close-loop examples/setpoint.py:Follower --scene positioning --duration 2 --rate 200
 """
 
@@ -45,6 +45,5 @@ class Follower:
 
 
 if __name__ == '__main__':
-    words = [word for word in sys.argv[1:] if word != '--lockstep']    # which the axis says itself
     sys.exit(controller_node(['--controller', f'{__file__}:Follower', '--rate', str(_RATE), '--duration',
-                              str(_TIME + _REST), *words]))
+                              str(_TIME + _REST), *sys.argv[1:]]))

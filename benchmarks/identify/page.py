@@ -9,7 +9,7 @@ from statistics import median
 from typing import TypeVar
 
 from stickslip_sim.identification.identified import FOUND
-from stickslip_sim.report.markdown import markdown_table
+from stickslip_sim.report.text import markdown_table
 
 from .axes import FARTHEST, FREE, LEAST_SLIPS, NEAREST
 from .foreign import ForeignOutcome

@@ -21,7 +21,7 @@ from stickslip_sim.advise.trial_runs import (
     solver_settings,
     try_changes,
 )
-from stickslip_sim.bench.measure import Cost
+from stickslip_sim.bench.race import Cost
 from stickslip_sim.cli.main import run
 from stickslip_sim.figures.distance import Distance, distance_between, event_difference
 from stickslip_sim.inputs import load_scene

@@ -13,13 +13,11 @@ import numpy as np
 import pytest
 
 from stickslip_sim.axis import InitialState
-from stickslip_sim.bench.cases import case_names, make_case
 from stickslip_sim.bench.contestants import exact_solver
-from stickslip_sim.bench.outside import FIRST_SLIP
+from stickslip_sim.bench.outside import FIRST_SLIP, Ratio, at_least, at_most, ratios
 from stickslip_sim.bench.peers import PEERS, dop853, mujoco, scipy_ivp
-from stickslip_sim.bench.problem import NO_SETTING, Outcome, Peer, Problem, Setting
+from stickslip_sim.bench.problem import NO_SETTING, Outcome, Peer, Problem, Setting, case_names, make_case
 from stickslip_sim.bench.race import Truth, errors_of, race
-from stickslip_sim.bench.ratios import Ratio, at_least, at_most, ratios
 from stickslip_sim.bench.report import as_case, markdown, race_as_json, text_table
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.input_profile import constant

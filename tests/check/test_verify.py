@@ -13,7 +13,7 @@ import pytest
 from stickslip_sim import load_scene, simulate
 from stickslip_sim.bags.topics import FRICTION_FORCE, SLIDER_STATE, Topic
 from stickslip_sim.check import verification
-from stickslip_sim.check.origin import doubts_about
+from stickslip_sim.check.remake import doubts_about
 from stickslip_sim.check.verification import Difference, Verdict, same_bytes, verify
 from stickslip_sim.cli.main import run
 from stickslip_sim.core.errors import RecordingWarning

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from stickslip_sim.check.origin import checkpoint_of, doubts_about
+from stickslip_sim.check.remake import checkpoint_of, doubts_about
 from stickslip_sim.check.verification import Verdict, verify
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import RecordingWarning

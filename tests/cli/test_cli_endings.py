@@ -16,9 +16,9 @@ from types import SimpleNamespace
 import click
 import pytest
 
-from stickslip_sim.cli import progress
+from stickslip_sim.cli import files
+from stickslip_sim.cli.files import progress_bar
 from stickslip_sim.cli.main import run
-from stickslip_sim.cli.progress import progress_bar
 from stickslip_sim.inputs import load_scene
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered, refused, restore_interrupt
@@ -143,6 +143,29 @@ except BaseException as found:
     assert (done.stdout, done.stderr) == (f'{end}\n', '')
 
 
+@pytest.mark.parametrize(('own', 'times'), [
+    ("print('hangs', flush=True)\nwhile True:\n    pass\n", 1),
+    ("""import time
+def own(t, measured):
+    while True:
+        try:
+            print('hangs', flush=True)
+            time.sleep(60)
+        except BaseException:
+            pass
+""", 3)])
+def test_a_controller_that_hangs_ends_with_ctrl_c(own: str, times: int, tmp_path: Path) -> None:
+    """While its file is read with the first, in a loop that takes it for an error of its own with the third."""
+    (tmp_path / 'own.py').write_text(own)
+    with started('--duration', '1', '--scene', 'positioning', verb=('close-loop', f'{tmp_path}/own.py:own')) as process:
+        assert process.stdout is not None
+        for _ in range(times):
+            assert process.stdout.readline() == 'hangs\n'
+            process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=60)
+    assert (process.returncode, err.strip()) == (130, 'stickslip: interrupted')
+
+
 @pytest.mark.ros
 def test_an_interrupted_bag_vanishes(tmp_path: Path) -> None:
     with started('--duration', '500', '--bag', tmp_path / 'bag') as process:
@@ -154,10 +177,10 @@ def test_an_interrupted_bag_vanishes(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def started(*arguments: str | Path) -> subprocess.Popen[str]:
-    """Start a run of paper_fig8; return when the tool is about to parse its arguments."""
+def started(*arguments: str | Path, verb: tuple[str, str] = ('simulate', 'paper_fig8')) -> subprocess.Popen[str]:
+    """Start a verb, as a run of paper_fig8; return when the tool is about to parse its arguments."""
     program = 'from stickslip_sim.cli import main; print(flush=True); main()'
-    process = subprocess.Popen([sys.executable, '-c', program, 'simulate', 'paper_fig8', *map(str, arguments)],
+    process = subprocess.Popen([sys.executable, '-c', program, *verb, *map(str, arguments)],
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=restore_interrupt)
     assert process.stdout is not None
     process.stdout.readline()
@@ -247,7 +270,7 @@ class Terminal:
 @pytest.fixture
 def terminal(monkeypatch: pytest.MonkeyPatch) -> Iterator[Terminal]:
     found = Terminal()
-    monkeypatch.setattr(progress, 'sys', SimpleNamespace(stderr=found.stream))   # pytest sets that of sys once more
+    monkeypatch.setattr(files, 'sys', SimpleNamespace(stderr=found.stream))   # pytest sets that of sys once more
     yield found
     found.stream.close()
 

@@ -18,7 +18,7 @@ from scipy.linalg import expm
 
 import stickslip_sim as stickslip
 from stickslip_sim.closed_loop.linear_loop import LinearLoop, friction_slope
-from stickslip_sim.closed_loop.tuning_report import tuning_report, tuning_values, verdicts
+from stickslip_sim.closed_loop.report import tuning_report, tuning_values, verdicts
 from stickslip_sim.controllers import Cascade, Controller
 from stickslip_sim.controllers.own_controller import Command, Measurement
 from stickslip_sim.core.errors import ControllerError, InputError

@@ -9,8 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from benchmarks.closed_loop import RATE, close_loop, figures
-from benchmarks.controllers import AXIS, PAGE, SLOW_FEED, by_model, controllers, most_delay
+from benchmarks.controllers import AXIS, PAGE, RATE, SLOW_FEED, by_model, close_loop, controllers, figures, most_delay
 from stickslip_sim.axis import CompliantContact
 from stickslip_sim.controllers import (
     AT_REST,

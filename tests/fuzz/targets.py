@@ -18,13 +18,13 @@ from hypothesis.strategies import SearchStrategy
 
 from stickslip_sim.check.limits import limits_of
 from stickslip_sim.check.observed_run import gaps_in, observed_motion, timing_of
-from stickslip_sim.check.origin import doubts_about
+from stickslip_sim.check.remake import doubts_about
 from stickslip_sim.check.verification import verify
 from stickslip_sim.cli.csv_tables import csv_lines
 from stickslip_sim.core.errors import InputError, RecordingWarning, SolverError
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import Bag, RecordedRun, open_bag, read_run
-from stickslip_sim.recording.playback import Recording
+from stickslip_sim.recording.reader import Recording
 from stickslip_sim.scene import parse_override, parse_scene, scene_names
 from stickslip_sim.scene.ros_yaml import read_yaml
 from stickslip_sim.study import EvenGrid, Study, variation

@@ -113,7 +113,7 @@ def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
         ended.enter_context(running('-r', '__ns:=/cell'))
         ended.enter_context(client('/cell')).connect()
         waiting = [ended.enter_context(started(sys.executable, *example, *nowhere)) for example in (
-            [CONTROLLER], [SETPOINT, '--lockstep'], [LOCKSTEP], [DRIVE, '0.001'])]
+            [CONTROLLER], [SETPOINT], [LOCKSTEP], [DRIVE, '0.001'])]
         for each in waiting:
             assert each.stderr
             line = each.stderr.readline()
@@ -140,7 +140,7 @@ class TestSetpoint:
 
     def test_and_in_lock_step_to_the_last_bit(self, tmp_path: Path) -> None:
         with running(*ENCODERS, '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
-            runs = [python(SETPOINT, '--lockstep', '--ros-args', '-r', '__ns:=/stepped') for _ in range(2)]
+            runs = [python(SETPOINT, '--ros-args', '-r', '__ns:=/stepped') for _ in range(2)]
         assert [run.returncode for run in runs] == [0, 0], runs
         first, second = (run.stderr.rpartition(']: ')[2] for run in runs)
         assert first == second == 'done: 2000 steps, t = 2 s\n'
@@ -154,7 +154,7 @@ class TestSetpoint:
             ('values', '1.0'))]
         words = [word for words in lost for word in words.split()]
         with running(*ENCODERS, *words, '-p', 'time.mode:=lockstep', folder=tmp_path):
-            done = python(SETPOINT, '--lockstep')
+            done = python(SETPOINT)
         assert done.returncode == 0, done.stderr
         assert re.match(r'there: the largest error was [1-9]\.', done.stdout)
 

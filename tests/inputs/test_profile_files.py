@@ -68,6 +68,7 @@ def test_units_give_the_decimal_number_that_was_meant() -> None:
     (NAMED, '0,1\n1,2\n', 'line 1 = .0,1. is refused: must be the names of the columns'),
     (f'{NAMED}, file_unit: furlong/s', 't,v\n0,1\n', r'drive\.file_unit = .furlong/s. is refused: must be one of m/s'),
     (NAMED, 't,v [mm/s]\n0,1\n', r'drive\.file_unit = .m/s. is refused: must be mm/s, as the heading says'),
+    (NAMED, 't,v [furlong]\n0,1\n', r'drive\.file_unit = .furlong. is refused: must be one of m/s, .*state it'),
     (NAMED, 't,v\n0,1\n\n1,2\n1,3\n', r'feed\.csv line 5 = 1\.0 is refused: must be a time after the one before'),
     (NAMED, 't,v\n0,1\n1,2\n1.000000000001,3\n', r'drive\.times = \[1\.0, 1\.0+1\] is refused: .*are 1e-12 s apart'),
     (NAMED, 't,v\n0,1\n# x\n1,nan\n', 'line 4 = .nan. is refused: must be a finite number'),

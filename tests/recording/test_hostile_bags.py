@@ -19,7 +19,7 @@ from mcap.writer import CompressionType
 from stickslip_sim.bags import bag_files
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import RecordedMessage, open_bag, write_bag
-from stickslip_sim.recording.playback import Recording
+from stickslip_sim.recording.reader import Recording
 from tests.support.check_files import LIMITS, limits_file
 from tests.support.made_up_bags import Record, file_of
 from tests.support.recorded_runs import FACTS, events, samples

@@ -233,7 +233,7 @@ def test_a_missing_topic_is_named(topic: str, word: str, fig8_bag: Path, tmp_pat
 @pytest.mark.usefixtures('_short_memory')
 def test_verify_what_if_of_a_long_run(fig8_bag: Path, tmp_path: Path, capsys: Capture,
                                       monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr('stickslip_sim.check.what_if.MOST_HELD', 100)
+    monkeypatch.setattr('stickslip_sim.check.remake.MOST_HELD', 100)
     out = tmp_path / 'out'
     assert tool(['verify', str(fig8_bag), '--set', 'axis.mass=300', '--out', str(out)]) == 0
     assert (out / 'what_if.png').stat().st_size > 10_000

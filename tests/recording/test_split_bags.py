@@ -17,7 +17,7 @@ from stickslip_sim.bags.topics import DRIVE_VELOCITY
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import RecordingError, RecordingWarning
 from stickslip_sim.recording import RECORDED, BagWriter, RunFacts, Split, flat_layout, open_bag, open_run, receipt_file
-from stickslip_sim.recording.playback import Recording
+from stickslip_sim.recording.reader import Recording
 from tests.support.recorded_runs import FACTS
 from tests.support.repository import ROOT
 from tests.support.tool import Capture

@@ -13,9 +13,8 @@ import pytest
 
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.report.html import write_page
-from stickslip_sim.report.markdown import markdown_lines
 from stickslip_sim.report.model import NOTE, OTHER, Part, Picture, Section, Sentence, Table, facts
-from stickslip_sim.report.text import text_lines
+from stickslip_sim.report.text import markdown_lines, text_lines
 from stickslip_sim.report.values import json_text, plain
 
 TABLE = Table(('law', 'rms', ''), [('a|b', '0.1 N', Sentence('good', 'holds')), ('c', '12.5 N', '')], 'Fits', (0, 2))

@@ -17,7 +17,8 @@ import pytest
 
 from stickslip_sim.cli.main import run
 from stickslip_sim.figures.point_figures import FIGURES
-from stickslip_sim.study import Study, resources, table
+from stickslip_sim.study import Study, table
+from stickslip_sim.study import folder as study_folder
 from stickslip_sim.study.folder import PARQUET, PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.study import study_of
 from stickslip_sim.study.table import read_columns, title_line
@@ -266,7 +267,7 @@ def test_two_processes_do_not_share_a_folder(tmp_path: Path, uninterrupted: byte
 
 def test_more_workers_than_memory_holds_are_refused(tmp_path: Path, capsys: Capture,
                                                     monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(resources, 'free_memory', lambda: 200_000_000)
+    monkeypatch.setattr(study_folder, 'free_memory', lambda: 200_000_000)
     monkeypatch.setattr(os, 'sched_getaffinity', lambda _: range(5))
     for number in ('5', 'all'):
         error = refused(capsys, 'sweep', *SMALL, '--workers', number, '--out', tmp_path / 'out')

@@ -23,8 +23,7 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.proof.axes import instant, of_kind
 from stickslip_sim.runs.batch import BatchFigures, Rounds, run_rounds
 from stickslip_sim.study import EvenGrid, Motion, Study, points, variation
-from stickslip_sim.study.folder import POINTS_TABLE
-from stickslip_sim.study.resources import free_memory
+from stickslip_sim.study.folder import POINTS_TABLE, free_memory
 from stickslip_sim.study.sweep import processes
 from tests.support.tool import Capture
 

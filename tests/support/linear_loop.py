@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from benchmarks.closed_loop import RATE
+from benchmarks.controllers import RATE
 from stickslip_sim.axis import Axis
 from stickslip_sim.controllers import Cascade
 

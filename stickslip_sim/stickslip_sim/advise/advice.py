@@ -5,7 +5,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple, TypeVar
 
-from ..bench.measure import Cost
+from ..bench.race import Cost
 from ..core.errors import InputError
 from ..core.types import Progress
 from ..figures.cycles import Round

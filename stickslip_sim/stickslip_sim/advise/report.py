@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..bench.measure import Cost
+from ..bench.race import Cost
 from ..bench.report import machine
 from ..figures.distance import ANOTHER_MOTION
 from ..report.model import NOTE, Part, Section, Sentence, Table

@@ -8,8 +8,8 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from ..bench.contestants import own_solver
-from ..bench.measure import Cost, measure
 from ..bench.problem import NO_SETTING, Outcome, Problem
+from ..bench.race import Cost, measure
 from ..core.errors import InputError, SolverError
 from ..core.types import Event, Instant, Sample
 from ..figures.distance import Distance, RunFigures, distance_between, run_figures

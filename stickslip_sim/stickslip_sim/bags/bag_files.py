@@ -12,18 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from mcap.records import (
-    Attachment,
-    AttachmentIndex,
-    Channel,
-    ChunkIndex,
-    Footer,
-    McapRecord,
-    Metadata,
-    MetadataIndex,
-    Schema,
-    Statistics,
-)
+from mcap import records
 from numpy.typing import NDArray
 
 from ..core.errors import RecordingError
@@ -140,12 +129,13 @@ class RecordedFile:
     @cached_property
     def attachments(self) -> dict[str, bytes]:
         """What is attached, by name; raises RecordingError."""
-        return {record.name: record.data for record in self._indexed(AttachmentIndex) if isinstance(record, Attachment)}
+        return {record.name: record.data for record in self._indexed(records.AttachmentIndex)
+                if isinstance(record, records.Attachment)}
 
     @cached_property
-    def metadata(self) -> list[Metadata]:
+    def metadata(self) -> list[records.Metadata]:
         """Its records of names and texts; raises RecordingError."""
-        return [record for record in self._indexed(MetadataIndex) if isinstance(record, Metadata)]
+        return [record for record in self._indexed(records.MetadataIndex) if isinstance(record, records.Metadata)]
 
     @property
     def next_file(self) -> str:
@@ -153,7 +143,7 @@ class RecordedFile:
         return next((record.metadata.get('file', '') for record in reversed(self.metadata)
                      if record.name == NEXT_FILE), '')
 
-    def type_of(self, channel: Channel) -> str:
+    def type_of(self, channel: records.Channel) -> str:
         """Return the name of the type of a channel; empty without one, as other programs may have it."""
         schema = self.schemas.get(channel.schema_id)
         return schema.name if schema else ''
@@ -208,28 +198,29 @@ class RecordedFile:
         return (RecordedMessage(*names[channel], *facts, data) for channel, facts, data in messages.each(chosen))
 
     def _forget(self) -> None:
-        self.channels: dict[int, Channel] = {}
-        self.schemas: dict[int, Schema] = {}
+        self.channels: dict[int, records.Channel] = {}
+        self.schemas: dict[int, records.Schema] = {}
         self.counts: Counter[int] = Counter()
         self.span: tuple[int, int] | None = None
         self.is_complete = False
         self._chunks: list[_Chunk] = []        # by time; empty without an index
-        self._places: dict[type[McapRecord], list[int]] = {AttachmentIndex: [], MetadataIndex: []}
+        self._places: dict[type[records.McapRecord], list[int]] = {
+            records.AttachmentIndex: [], records.MetadataIndex: []}
         self._beside = 0
 
     def _take_summary(self) -> bool:
         """Take what the summary says; return whether there is one to be trusted, about a file with messages."""
         self._forget()
-        statistics: Statistics | None = None
+        statistics: records.Statistics | None = None
         try:
             with self.path.open('rb') as file:
                 for record in summary_of(file, self._is_checked):
-                    if isinstance(record, Statistics):
+                    if isinstance(record, records.Statistics):
                         statistics = record
-                    elif isinstance(record, ChunkIndex) and not self._is_checked:    # else all of it is read in order
+                    elif isinstance(record, records.ChunkIndex) and not self._is_checked:    # else all is read in order
                         self._chunks.append(_Chunk(record.message_start_time, record.message_end_time,
                                                    record.chunk_start_offset))
-                    elif isinstance(record, (AttachmentIndex, MetadataIndex)):
+                    elif isinstance(record, (records.AttachmentIndex, records.MetadataIndex)):
                         self._places[type(record)].append(record.offset)
                     else:
                         self._take(record)
@@ -240,7 +231,7 @@ class RecordedFile:
         self.counts.update(statistics.channel_message_counts)
         self.span = statistics.message_start_time, statistics.message_end_time
         self._chunks.sort(key=lambda chunk: chunk.begin)
-        listed = len(self._places[AttachmentIndex]), len(self._places[MetadataIndex])
+        listed = len(self._places[records.AttachmentIndex]), len(self._places[records.MetadataIndex])
         return not self._is_checked or (
             listed == (statistics.attachment_count, statistics.metadata_count)
             and self.counts.total() == statistics.message_count and self.counts.keys() <= self.channels.keys())
@@ -249,28 +240,28 @@ class RecordedFile:
         """Take what all records say, as far as they go."""
         self._forget()
         attachments: dict[str, bytes] = {}
-        metadata: list[Metadata] = []
+        metadata: list[records.Metadata] = []
         for record in contents(self.path):
             if isinstance(record, Messages):
                 self._count(record)
-            elif isinstance(record, Attachment):
+            elif isinstance(record, records.Attachment):
                 attachments[record.name] = record.data
-            elif isinstance(record, Metadata):
+            elif isinstance(record, records.Metadata):
                 metadata.append(record)
             if not isinstance(record, Messages):
                 self._take(record)
         self.attachments, self.metadata = attachments, metadata
 
-    def _take(self, record: McapRecord) -> None:
+    def _take(self, record: records.McapRecord) -> None:
         """Take a record that is no message; the index repeats those of the file."""
         self._beside += _size(record)
         if self._beside > MOST_BESIDE:
             raise RecordingError(f'{self.path}: more than {MOST_BESIDE >> 20} MiB beside its messages; no run has that')
-        if isinstance(record, Schema):
+        if isinstance(record, records.Schema):
             self.schemas.setdefault(record.id, record)
-        elif isinstance(record, Channel):
+        elif isinstance(record, records.Channel):
             self.channels.setdefault(record.id, record)
-        elif isinstance(record, Footer):
+        elif isinstance(record, records.Footer):
             self.is_complete = True
 
     def _count(self, messages: Messages) -> None:
@@ -283,7 +274,7 @@ class RecordedFile:
             span = int(times.min()), int(times.max())
             self.span = (min(span[0], self.span[0]), max(span[1], self.span[1])) if self.span else span
 
-    def _indexed(self, kind: type[McapRecord]) -> Iterator[McapRecord]:
+    def _indexed(self, kind: type[records.McapRecord]) -> Iterator[records.McapRecord]:
         """Yield the records that the index lists; raises RecordingError where they are not there."""
         try:
             with self.path.open('rb') as file:
@@ -294,7 +285,7 @@ class RecordedFile:
         except (*CUT_OFF, OSError):
             raise RecordingError(f'{self.path}: damaged: what it lists is not there; fetch the file again') from None
 
-    def _qos_of(self, channel: Channel) -> QosProfile:
+    def _qos_of(self, channel: records.Channel) -> QosProfile:
         """Return what was offered, in the words of any version of rosbag2."""
         from rosbags.rosbag2 import ReaderError  # takes 5 MB, for a bag that is played only
         from rosbags.rosbag2.metadata import parse_qos
@@ -312,11 +303,11 @@ class RecordedFile:
                           durability if durability == 'transient_local' else 'volatile')
 
 
-def _size(record: McapRecord) -> int:
+def _size(record: records.McapRecord) -> int:
     """Return about how many bytes of a record are kept."""
-    if isinstance(record, (Attachment, Schema)):
+    if isinstance(record, (records.Attachment, records.Schema)):
         return len(record.name) + len(record.data)
-    if isinstance(record, (Channel, Metadata)):
+    if isinstance(record, (records.Channel, records.Metadata)):
         return sum(len(key) + len(value) for key, value in record.metadata.items()) + OVERHEAD
     return 0
 

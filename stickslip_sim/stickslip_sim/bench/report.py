@@ -8,13 +8,12 @@ import platform
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from ..report.markdown import markdown_lines
 from ..report.model import NOTE, Part, Section, Sentence, Table
-from ..report.text import text_lines
+from ..report.text import markdown_lines, text_lines
 from ..report.values import versions
+from .outside import Ratio
 from .problem import Setting
 from .race import RACE_DIGITS, CaseResult, Row
-from .ratios import Ratio
 
 _HEADS = ('solver', 'setting', 'µs per simulated s', '× exact', 'missed', 'invented', 'event time, s', 'position, m')
 _MARK_HEADS = ('figure', 'case', 'measured', 'mark', 'aim', 'mark met')

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core.errors import InputError, RecordingError, suggestion
+from ..figures.control import MeasuredFigure, Measuring, MotionBlock, MotionSpan, no_sample_in, positions_of_targets
 from ..figures.positioning import PositionFigures
 from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, column_of
 from ..runs import Run
@@ -20,25 +21,9 @@ from ..scene import Parameter
 from ..scene.load import named, read_text
 from ..scene.ros_yaml import read_yaml, section
 from ..scene.schema import MOST_POINTS
-from .measures import (
-    CIRCLE_KINDS,
-    DWELL,
-    FARTHEST,
-    KINDS,
-    TARGET,
-    TARGETS,
-    TIMING_LIMIT,
-    TOLERANCE,
-    CircleKind,
-    Kind,
-    MeasuredFigure,
-    Positioning,
-    no_sample_in,
-)
+from .measures import CIRCLE_KINDS, DWELL, FARTHEST, KINDS, TARGET, TARGETS, TIMING_LIMIT, TOLERANCE, CircleKind, Kind
 from .observed_run import (
     KnownCommands,
-    MotionBlock,
-    MotionSpan,
     ObservedMotion,
     Reference,
     commands_of,
@@ -173,7 +158,7 @@ class NominalCircle(NamedTuple):
 
 
 class RestSettings(NamedTuple):
-    """What a file says of the rests of a positioning test; see `Positioning`."""
+    """What a file says of the rests of a positioning test; see `positions_of_targets`."""
 
     targets: tuple[float, ...] = ()
     dwell: float = 0.1   # s
@@ -402,10 +387,10 @@ def positions_of(limits: Limits, run: Run) -> list[PositionFigures]:
     span = limits.window.at(first_command_of(run)) or CheckedSpan()
     begin = motion.begin if span.begin is None else span.begin
     end = motion.end if span.end is None else span.end
-    measurement = Positioning(motion.cut(begin, end), *limits.positioning)
+    measurement = Measuring(positions_of_targets(motion.cut(begin, end), *limits.positioning))
     for block in motion_blocks(states_of(run), motion.events, limits.reference_for(run)):
         measurement.take(block.cut(begin, end))
-    return measurement.positions
+    return list(measurement.result())
 
 
 class _Open:
@@ -413,7 +398,7 @@ class _Open:
 
     def __init__(self, limit: Limit, checked: CheckedSpan, span: MotionSpan) -> None:
         self._limit, self._checked, self._span = limit, checked, span
-        self._measurement = limit.kind.measure(span, **limit.settings)
+        self._measurement: Measuring[MeasuredFigure] = Measuring(limit.kind.measure(span, **limit.settings))
         self._has_samples = False
 
     def take(self, block: MotionBlock) -> None:
@@ -427,7 +412,7 @@ class _Open:
         if not self._has_samples:
             raise no_sample_in(self._span.begin, self._span.end)
         with limit.named():
-            return limit.outcome(self._measurement.figure(), self._checked)
+            return limit.outcome(self._measurement.result(), self._checked)
 
 
 def _begun(limit: Limit, motion: ObservedMotion, commands: KnownCommands | None, needs_commands: bool

@@ -13,6 +13,7 @@ from ..bags.topics import DRIVE_VELOCITY, MODE_EVENT, SLIDER_STATE
 from ..core.arrays import Columns, Flags, Numbers
 from ..core.errors import RecordingError, one_line
 from ..core.types import Event, EventKind, Mode
+from ..figures.control import MotionBlock, MotionSpan, Points, held
 from ..recording import MeasuredRun, RecordedRun
 from ..recording.reader import EVENT_FIELDS
 from ..recording.run_outline import StatesSeen
@@ -35,55 +36,6 @@ class Reference(NamedTuple):
     def later(self, delay: float) -> 'Reference':
         """Return the same reference, `delay` (s) later."""
         return Reference(tuple(time + delay for time in self.times), self.positions)
-
-
-class Points(NamedTuple):
-    """The slider at the samples and at the transitions, in the order of time."""
-
-    time: Numbers       # s
-    position: Numbers   # m
-    velocity: Numbers   # m/s
-
-
-class MotionBlock(NamedTuple):
-    """Some of the samples, one after the other; `points` are those and the transitions among them and before."""
-
-    time: Numbers        # s, rising
-    position: Numbers    # m, slider
-    commanded: Numbers   # m, the drive or a reference
-    has_moved: Flags     # whether that moved since the sample before
-    way: Numbers         # in which sense it moved last: 1, -1, or 0 where it never did
-    command: Numbers     # m/s, velocity of the drive
-    rate: Numbers        # m/s², its change since the sample before
-    points: Points
-
-    @property
-    def following_error(self) -> Numbers:
-        """Commanded less actual position at the samples, m."""
-        return self.commanded - self.position
-
-    def cut(self, begin: float, end: float) -> 'MotionBlock':
-        """Return the part from `begin` to `end` (s), both included."""
-        of_samples, of_points = _rows(self.time, begin, end), _rows(self.points.time, begin, end)
-        return MotionBlock(self.time[of_samples], self.position[of_samples], self.commanded[of_samples],
-                           self.has_moved[of_samples], self.way[of_samples], self.command[of_samples],
-                           self.rate[of_samples], Points(*(column[of_points] for column in self.points)))
-
-
-@dataclass(frozen=True)
-class MotionSpan:
-    """The transitions of the axis from `begin` to `end` (s); `mode` holds from `begin` until the first of them."""
-
-    begin: float
-    end: float
-    mode: Mode
-    events: Sequence[Event]  # without those of kind knot
-
-    def cut(self, begin: float, end: float) -> 'MotionSpan':
-        """Return the part from `begin` to `end` (s), both included."""
-        before = [event for event in self.events if event.time < begin]
-        return MotionSpan(begin, end, before[-1].mode if before else self.mode,
-                          [event for event in self.events if begin <= event.time <= end])
 
 
 @dataclass(frozen=True)
@@ -115,12 +67,6 @@ def motion_blocks(states: Iterable[Columns], events: Sequence[Event], reference:
     yield MotionBlock(none, none, none, no, none, none, none, late)
 
 
-def held(marks: Flags, values: Numbers, before: float) -> Numbers:
-    """Return in each row the value of the latest marked one, `before` in front of the first."""
-    rows = np.maximum.accumulate(np.where(marks, np.arange(len(marks)), -1))
-    return np.where(rows < 0, before, values[rows])
-
-
 class _Follower:
     """Follows the command from block to block."""
 
@@ -147,10 +93,6 @@ def _points(block: Columns, times: Numbers, events: Sequence[Event]) -> Points:
     between = [event for event, new in zip(events, is_new) if new]
     return Points(*(np.insert(block[name], places[is_new], [getattr(event, name) for event in between])
                     for name in Points._fields))
-
-
-def _rows(time: Numbers, begin: float, end: float) -> slice:
-    return slice(int(np.searchsorted(time, begin, 'left')), int(np.searchsorted(time, end, 'right')))
 
 
 _SEEN = ('time', 'position', 'velocity', 'drive_position', 'mode')

@@ -2,29 +2,115 @@
 # SPDX-License-Identifier: Apache-2.0
 """Steps made again: as a node made them, or as an offline run did."""
 
+import hashlib
+import json
+import shlex
 from collections import deque
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 from itertools import groupby
 from typing import Any, NamedTuple, Protocol
 
-from ..bags.topics import (
-    DRIVE_VELOCITY,
-    EXTERNAL_FORCE,
-    FRICTION_FORCE,
-    MODE_EVENT,
-    PARAMETER_EVENTS,
-    RIG_EVENT,
-    SLIDER_STATE,
-    Topic,
-)
-from ..core.errors import InputError, RecordingError
-from ..core.types import Event, EventKind, Progress, Sample
-from ..recording import Bag, RecordedMessage, RecordedRun
-from ..recording.run import CHECKPOINT_FILE
-from ..runs import simulate
-from ..scene import Scene, scene_from_values
+import numpy as np
+
+from ..bags import topics
+from ..bags.bag import METADATA
+from ..core.arrays import Columns
+from ..core.errors import InputError, RecordingError, one_line
+from ..core.types import Event, EventKind, Mode, Progress, Sample
+from ..core.version import __version__
+from ..figures.cycles import summary
+from ..recording import Bag, MeasuredRun, RecordedMessage, RecordedRun
+from ..recording.run import CHECKPOINT_FILE, SCENE_FILE, RunFacts, checkpoint_file
+from ..runs import SimulatedRun, simulate
+from ..runs.samples import GATHERED, MOST_HELD, HeldSamples, RemadeSamples, Samples, joined
+from ..runs.simulated import columns_of_rows
+from ..scene import Scene, changed, scene_from_values
+from ..scene.schema import BY_NAME
 from ..simulation import Fault, Rig, RigEventKind, StepResult
-from .origin import Offline, begins_in_mid_run, checkpoint_of, offline_of
+from .observed_run import first_command_of
+
+_MAKERS = 'version', 'python', 'platform', 'numpy', 'hot_path'
+
+
+class Offline(NamedTuple):
+    """How long an offline run was, and how often it was sampled."""
+
+    duration: float            # s
+    sample_period: Fraction    # s
+
+
+def doubts_about(run: RecordedRun) -> tuple[str, ...]:
+    """Return what is doubtful about a run, for people; raises RecordingError when it cannot be run again."""
+    bag = run.bag
+    if isinstance(run, MeasuredRun):
+        raise RecordingError(f'{bag.path}: it was measured; only what was simulated can be verified')
+    if not bag.is_complete and not bag.topics:
+        raise RecordingError(f'{bag.path}: cut off before its first message was written')
+    facts = _facts_of(run)
+    if part := facts.get('part'):
+        raise RecordingError(f'{bag.path}: part {part} of a recording that was split, which begins with another file; '
+                             'give the folder of the whole bag')
+    _ = run.scene, checkpoint_of(run), offline_of(run)
+    return tuple(map(one_line, _doubts(run, facts)))
+
+
+def checkpoint_of(run: RecordedRun) -> Mapping[str, Any] | None:
+    """Return the checkpoint that a run began from; None when it began at the start of its scene."""
+    return run.bag.values(CHECKPOINT_FILE) if CHECKPOINT_FILE in run.bag.attachments else None
+
+
+def begins_in_mid_run(run: RecordedRun) -> bool:
+    """Return whether a run began elsewhere than its scene does: not so after a reset, while time stands still at 0."""
+    checkpoint = checkpoint_of(run)
+    if checkpoint is None:
+        return False
+    rig = run.scene.make_rig()
+    rig.make_step()
+    return bool(json.loads(checkpoint_file(rig.checkpoint())[CHECKPOINT_FILE]) != checkpoint)
+
+
+def offline_of(run: RecordedRun) -> Offline | None:
+    """Return how an offline run was carried out; None for a node's.  Raises RecordingError when it does not say."""
+    facts = _facts_of(run)
+    if facts.get('origin') == 'node':
+        return None
+    try:
+        return Offline(float(facts['duration']), Fraction(facts['sample_period']))
+    except (KeyError, ValueError, ZeroDivisionError):
+        raise RecordingError(f'{run.bag.path}: it does not say whether a node or the tool made it; recorded by another '
+                             'version?') from None
+
+
+def made_with(run: RecordedRun) -> str:
+    """Return what of the recording's versions and machine is not as here, and what is here instead; for people."""
+    recorded, here = _facts_of(run), RunFacts.of(run.scene).as_metadata()
+    others = [f'{name} {recorded[name]} (here {here[name]})' for name in _MAKERS
+              if recorded.get(name, here[name]) != here[name]]
+    return one_line(', '.join(others)) or 'the same versions on the same kind of machine'
+
+
+def _facts_of(run: RecordedRun) -> Mapping[str, str]:
+    if METADATA not in run.bag.metadata:
+        raise RecordingError(f'{run.bag.path}: it does not say what it was simulated with; give a run that stickslip '
+                             'recorded')
+    return run.bag.metadata[METADATA]
+
+
+def _doubts(run: RecordedRun, facts: Mapping[str, str]) -> Iterator[str]:
+    if facts.get('version') != __version__:
+        yield f'recorded by stickslip {facts.get("version")}, this is {__version__}: the numbers may differ'
+    if hashlib.sha256(run.bag.attachments[SCENE_FILE]).hexdigest() != facts.get('scene_hash'):
+        yield f'{SCENE_FILE} was changed after the recording'
+    elif run.scene.hash != facts.get('scene_hash'):
+        yield f'{SCENE_FILE} means something else in this version'
+    if run.bag.next_file:
+        yield f'the recording {run.bag.continuation}'
+    elif not run.is_complete:
+        yield 'the recording has no end: cut off, or still being written'
+    if dropped := run.receipt.get('dropped_messages'):
+        yield f'{dropped} messages were dropped while recording'
+
 
 # The messages of a recording, step by step.
 
@@ -48,8 +134,9 @@ class Orders:
         self._velocity: float | None = None    # for the next step, m/s
         self._force: float | None = None       # N
         self._values = scene.values
-        self._doers = {DRIVE_VELOCITY.type: self._command_velocity, EXTERNAL_FORCE.type: self._command_force,
-                       RIG_EVENT.type: self._event, PARAMETER_EVENTS.type: self._change}
+        self._doers = {topics.DRIVE_VELOCITY.type: self._command_velocity,
+                       topics.EXTERNAL_FORCE.type: self._command_force,
+                       topics.RIG_EVENT.type: self._event, topics.PARAMETER_EVENTS.type: self._change}
 
     def give(self, message: RecordedMessage) -> None:
         """Order what a message says; raises RecordingError when the rig refuses."""
@@ -97,8 +184,8 @@ def _value(value: Any) -> object:
     return found.tolist() if hasattr(found, 'tolist') else found
 
 
-ORDERS = DRIVE_VELOCITY, EXTERNAL_FORCE, RIG_EVENT, PARAMETER_EVENTS
-_OUTPUTS = SLIDER_STATE, FRICTION_FORCE, MODE_EVENT
+ORDERS = topics.DRIVE_VELOCITY, topics.EXTERNAL_FORCE, topics.RIG_EVENT, topics.PARAMETER_EVENTS
+_OUTPUTS = topics.SLIDER_STATE, topics.FRICTION_FORCE, topics.MODE_EVENT
 MOST_MISSING = 1_000_000           # steps that are made again without being compared
 _HALF, _WHOLE = 1 << 31, 1 << 32   # the file has 32 bits for the number of a step
 
@@ -108,12 +195,12 @@ class RecordedStep(NamedTuple):
 
     number: int
     orders: list[RecordedMessage]
-    outputs: dict[Topic, list[RecordedMessage]]
+    outputs: dict[topics.Topic, list[RecordedMessage]]
 
     @property
     def is_whole(self) -> bool:
         """Whether the state at its end was recorded."""
-        return bool(self.outputs[SLIDER_STATE] and self.outputs[FRICTION_FORCE])
+        return bool(self.outputs[topics.SLIDER_STATE] and self.outputs[topics.FRICTION_FORCE])
 
 
 def steps_of(run: RecordedRun, start: int) -> Iterator[RecordedStep]:
@@ -124,7 +211,7 @@ def steps_of(run: RecordedRun, start: int) -> Iterator[RecordedStep]:
     bag = run.bag
     ordered = () if offline_of(run) else [topic for topic in ORDERS if topic.type in bag.topics.values()]
     kinds = {bag.name_of(topic): topic for topic in (*ordered, *_OUTPUTS)}
-    messages = (message for message in bag.messages(kinds) if kinds[message.topic] != RIG_EVENT
+    messages = (message for message in bag.messages(kinds) if kinds[message.topic] != topics.RIG_EVENT
                 or is_order(bag, message))
     number, missing = start, 0
     for sequence, group in groupby(_numbered(messages, kinds, start), key=lambda item: item[0]):
@@ -140,17 +227,17 @@ def steps_of(run: RecordedRun, start: int) -> Iterator[RecordedStep]:
             yield _step(number, [message for _, message in group], kinds)
 
 
-def _numbered(messages: Iterable[RecordedMessage], kinds: dict[str, Topic], start: int
+def _numbered(messages: Iterable[RecordedMessage], kinds: dict[str, topics.Topic], start: int
               ) -> Iterator[tuple[int, RecordedMessage]]:
     """Yield messages with the number of their step; events at the very start belong to step 0, which is none."""
     is_at_start = start < 0
     for message in messages:
-        is_at_start = is_at_start and kinds[message.topic] != SLIDER_STATE
-        yield 0 if is_at_start and kinds[message.topic] == MODE_EVENT else message.sequence, message
+        is_at_start = is_at_start and kinds[message.topic] != topics.SLIDER_STATE
+        yield 0 if is_at_start and kinds[message.topic] == topics.MODE_EVENT else message.sequence, message
 
 
-def _step(number: int, messages: list[RecordedMessage], kinds: dict[str, Topic]) -> RecordedStep:
-    outputs: dict[Topic, list[RecordedMessage]] = {topic: [] for topic in _OUTPUTS}
+def _step(number: int, messages: list[RecordedMessage], kinds: dict[str, topics.Topic]) -> RecordedStep:
+    outputs: dict[topics.Topic, list[RecordedMessage]] = {topic: [] for topic in _OUTPUTS}
     orders: list[RecordedMessage] = []
     for message in messages:
         outputs.get(kinds[message.topic], orders).append(message)
@@ -194,7 +281,7 @@ class _NodeMaker:
     def make(self, step: RecordedStep) -> Iterator[Made]:
         while self._rig.step + 1 < step.number:
             yield self._made()
-        events = [order for order in step.orders if order.type == RIG_EVENT.type][:self._known]
+        events = [order for order in step.orders if order.type == topics.RIG_EVENT.type][:self._known]
         self._known = 0
         for order in step.orders:
             if order not in events:
@@ -249,3 +336,70 @@ class _OfflineMaker:
 
 def _without_knots(events: Sequence[Event]) -> list[Event]:
     return [event for event in events if event.kind != EventKind.KNOT]
+
+
+# A recorded run beside what would have been with other parameters, under the same orders.
+
+def other_scene(run: RecordedRun, changes: Mapping[str, object]) -> Scene:
+    """Return the scene with changes; raises InputError on those that this recording leaves no room for."""
+    is_of_node, is_in_mid_run = offline_of(run) is None, begins_in_mid_run(run)
+    for name, value in changes.items():
+        entry = BY_NAME.get(name)
+        if is_of_node and name.startswith('time.'):
+            raise InputError(name, value, 'as in the recording', 'its orders are counted in steps')
+        if is_in_mid_run and entry is not None and not entry.live:
+            raise InputError(name, value, 'a parameter that can change while the axis runs',
+                             'this recording begins in mid-run; take one from the start')
+    return changed(run.scene, changes)
+
+
+def feedback_note(run: RecordedRun, changes: Mapping[str, object]) -> str:
+    """Return that a controller would have given other commands, and how to ask it; empty for a run without commands."""
+    if first_command_of(run) is None:
+        return ''
+    known = run.receipt.get('controller')
+    controller: Mapping[str, Any] = known if isinstance(known, dict) else {}
+    command = str(controller.get('command') or f'stickslip close-loop FILE.py:{controller.get("name", "NAME")} --scene '
+                  f'{run.scene.name} --duration {run.duration:g}')
+    changed = shlex.join(word for name, value in changes.items() for word in ('--set', f'{name}={value}'))
+    return one_line('the commands are those of the recording; a controller that sees the other axis answers otherwise: '
+                    f'{command} {changed}')
+
+
+def other_run(run: RecordedRun, scene: Scene, changes: Mapping[str, object], progress: Progress = None) -> SimulatedRun:
+    """Return the same steps under the same orders with another scene, which `changes` made of that of the recording.
+
+    Raises RecordingError when an order makes no sense any more, SolverError when the solver gives up.
+    """
+    def made(progress: Progress = None) -> Iterator[tuple[Columns, list[Event]]]:
+        return _blocks(run, maker_of(run, scene, changes.keys(), progress))
+
+    held: list[Columns] = []
+    events: list[Event] = []
+    count, begin, end, start = 0, 0.0, 0.0, Mode.STICK
+    for block, new in made(progress):
+        if not count:
+            begin, start = float(block['time'][0]), Mode(int(block['mode'][0]))
+        count, end = count + len(block['time']), float(block['time'][-1])
+        events += new
+        if count <= MOST_HELD:
+            held.append(block)
+    figures = summary([event for event in events if begin <= event.time <= end], end - begin, start, begin)
+    samples: Samples = (HeldSamples(joined(held)) if count <= MOST_HELD
+                        else RemadeSamples(lambda: (block for block, _ in made()), count))
+    return SimulatedRun(scene, end, None, events, samples, figures, begin=begin, setpoint=run.setpoint)
+
+
+def _blocks(run: RecordedRun, maker: Maker) -> Iterator[tuple[Columns, list[Event]]]:
+    """Yield the samples and the events of the steps of a recording, made again, block by block."""
+    samples: list[Sample] = []
+    events: list[Event] = []
+    for step in steps_of(run, maker.start):
+        for made in maker.make(step):
+            samples.append(made.sample)
+            events += made.events
+        if len(samples) >= GATHERED:
+            yield columns_of_rows(np.array(samples)), events
+            samples, events = [], []
+    if samples:
+        yield columns_of_rows(np.array(samples)), events

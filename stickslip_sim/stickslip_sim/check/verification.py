@@ -15,8 +15,7 @@ from ..recording import Bag, RecordedMessage, RecordedRun
 from ..recording.messages import Packer
 from ..recording.offline_bag import CHANNELS, message_blocks
 from ..runs import SimulatedRun, simulate
-from .origin import offline_of
-from .remake import Made, Maker, RecordedStep, maker_of, steps_of
+from .remake import Made, Maker, RecordedStep, maker_of, offline_of, steps_of
 
 # An offline run beside its recording, byte by byte: quick, and sure where all is the same.
 #

@@ -4,15 +4,14 @@
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, scene_changes, verb
-from .files import FILE, SCENE_FILE, say_written, show, write_text
+from .arguments import SceneChanges, scene_argument, scene_changes, verb
+from .files import FILE, SCENE_FILE, progress_bar, say_written, show, write_json, write_text
 
 _ROUNDS = 5
 
 
 @verb(short_help='Show which parts and which solver a tolerance needs.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--tolerance', type=float, required=True, metavar='T', help='Relative error that is allowed, as 1e-3.')
 @click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: 10 s, or more for 20 cycles].')
 @click.option('--out', type=FILE, metavar='FILE.json', help='Write everything that was measured.')
@@ -26,9 +25,7 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: SceneC
     from ..advise import advice
     from ..advise.report import advice_as_values, advice_report, least_scene_lines, verdict_report
     from ..advise.trial_runs import changes_between, check_duration, default_duration
-    from ..report.values import json_text
     from ..scene.values import overridden
-    from .progress import progress_bar
 
     advice.check_tolerance(tolerance)
     if duration is not None:
@@ -38,8 +35,7 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: SceneC
         found = advice.advise(loaded, tolerance, duration or default_duration(loaded), rounds, progress)
     overrides = overridden(changes.given(), changes_between(loaded, found.least.trial.scene or loaded))
     show([*advice_report(found), *verdict_report(found, overrides)])
-    if out is not None:
-        write_text(out, [json_text(advice_as_values(found, overrides))])
+    write_json(out, advice_as_values(found, overrides), 1)
     if scene_out is not None:
         write_text(scene_out, least_scene_lines(found))
     say_written(out, scene_out)

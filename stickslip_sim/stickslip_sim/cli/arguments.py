@@ -4,8 +4,10 @@
 
 import functools
 import os
+import shlex
+import sys
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -13,9 +15,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from . import completion
-from .files import Verb
+from .files import Verb, progress_bar
 
 if TYPE_CHECKING:
+    from ..check.limits import Limits
     from ..recording import RecordedRun
     from ..runs import Run
     from ..scene import Scene
@@ -52,7 +55,6 @@ def recorded_run(path: str) -> 'RecordedRun':
     """
     from ..core.errors import RecordingWarning
     from ..recording import read_run
-    from .progress import progress_bar
 
     check_run(path)
     with warnings.catch_warnings(), progress_bar('reading'):
@@ -60,8 +62,10 @@ def recorded_run(path: str) -> 'RecordedRun':
         return read_run(path)
 
 
-def check_sources(sources: Iterable[str], duration: float | None, changes: 'SceneChanges') -> None:
-    """Raise UsageError where --duration and --set have no scene, or a scene has no duration."""
+def check_sources(sources: Sequence[str], duration: float | None, changes: 'SceneChanges', once: bool = True) -> None:
+    """Raise UsageError where one is given again, --duration and --set have no scene, or a scene has no duration."""
+    if once:
+        check_each_once(sources)
     recorded = [is_recorded(source) for source in sources]
     if all(recorded) and (duration is not None or changes.overrides):
         raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
@@ -69,16 +73,24 @@ def check_sources(sources: Iterable[str], duration: float | None, changes: 'Scen
         raise click.UsageError('--duration S is needed to simulate a scene.')
 
 
-def simulated(source: str, duration: float, changes: 'SceneChanges', each_step: bool = False) -> 'Run':
-    """Return the run of a scene, `each_step` sampled as its node would record it; raises InputError."""
+def run_of(source: str, duration: float | None, changes: 'SceneChanges', limits: 'Limits | None' = None) -> 'Run':
+    """Return a recorded run, or that of a scene: for `limits`, which have to fit it, sampled as its node records it.
+
+    Raises InputError and RecordingError.
+    """
+    if is_recorded(source) or duration is None:    # a scene has one
+        return recorded_run(source)
+    from ..check.limits import check_fit
     from ..runs import simulate, simulate_events
     from ..runs.simulated import check_run_times
-    from .progress import progress_bar
 
+    if limits is not None:
+        check_fit(limits, 0.0, duration, has_timing=False, commands=None)
     check_run_times(duration, None)
     scene = changes.load(source)
     with progress_bar('simulating') as progress:
-        return simulate(scene, duration, progress=progress) if each_step else simulate_events(scene, duration, progress)
+        return simulate_events(scene, duration, progress) if limits is None else simulate(scene, duration,
+                                                                                          progress=progress)
 
 
 def check_run(path: str) -> None:
@@ -166,6 +178,28 @@ def scene_changes(help_of_set: str) -> Callable[[ClickCommand], ClickCommand]:
     return decorated
 
 
+# What several verbs have.
+
+scene_argument = click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+run_argument = click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
+sources_argument = click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...',
+                                  shell_complete=completion.complete_scenes)
+scene_duration = click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
+
+
+def check_each_once(sources: Sequence[str]) -> None:
+    """Raise UsageError where one is given again."""
+    if len(set(sources)) < len(sources):
+        raise click.UsageError('RUN_OR_SCENE: give each once.')
+
+
+def command_line(*words: str, **options: Iterable[object]) -> str:
+    """Return the words that call the tool with options, each for every value but None; or those it was called with."""
+    given = [word for name, values in options.items() for value in values if value is not None
+             for word in (f'--{name}', str(value))]
+    return shlex.join(['stickslip', *(words or sys.argv[1:]), *given])
+
+
 # What a verb with a controller of the user has.
 
 def controller_options(help_of_gain: str) -> Callable[[ClickCommand], ClickCommand]:
@@ -218,9 +252,8 @@ def _members(workers: str | None, scheduler: str | None) -> Members:
     """Return the workers on a study: none but this process, processes, or a cluster; raises InputError, UsageError."""
     if workers is None and scheduler is None:
         return nullcontext()
-    from ..study.cluster import cluster
-    from ..study.resources import process_count
-    from ..study.sweep import processes
+    from ..study.folder import process_count
+    from ..study.sweep import cluster, processes
 
     if scheduler is not None:
         if workers is not None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from .files import say_written, whole, write_text
+from .files import progress_bar, say_written, whole, write_text
 
 _ROUNDS, _QUICK_ROUNDS = 7, 1
 _QUICK_CASES, _QUICK_DURATION = ('A', 'paper_fig8'), 2.0   # s
@@ -25,13 +25,11 @@ def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, round
     if more and not chosen:
         raise click.UsageError('name the scenes after --scenes.')
     folder = _made(out) if out is not None else None
-    from ..bench.cases import case_names, make_case
     from ..bench.contestants import contestants
-    from ..bench.outside import batch_ratios, outside_ratios
+    from ..bench.outside import batch_ratios, outside_ratios, ratios
+    from ..bench.problem import case_names, make_case
     from ..bench.race import race
-    from ..bench.ratios import ratios
     from ..bench.report import marks_table, race_as_json, text_table
-    from .progress import progress_bar
 
     names = (*chosen, *more) or (_QUICK_CASES if quick else tuple(case_names()))
     problems = [make_case(name, _QUICK_DURATION if quick else None) for name in dict.fromkeys(names)]
@@ -61,7 +59,7 @@ def _made(path: str) -> Path:
 
 
 def _write(folder: Path, data: dict[str, Any]) -> None:
-    from ..bench.cases import LETTERS
+    from ..bench.problem import LETTERS
     from ..bench.report import markdown
     from ..plots import SolverCurve, plot_trade
 

@@ -8,9 +8,8 @@ from typing import Any
 
 import click
 
+from ..ros.environment import answer_of_node
 from .files import show
-
-_Command = Callable[..., None]
 
 
 @click.group(short_help='Call a service of a running node.', invoke_without_command=True)
@@ -25,7 +24,7 @@ def call(context: click.Context) -> None:
         context.exit(2)
 
 
-def _of(node: str) -> Callable[[_Command], _Command]:
+def _of(node: str = 'feed_axis') -> Callable[[Callable[..., None]], Any]:
     """Return what adds the options that every call has, with the name of the node where none is given."""
     timeout = click.option('--timeout', type=click.FloatRange(0.1, 3600.0), default=10.0, show_default=True,
                            metavar='S', help='Time to wait for the node, and for its answer, s.')
@@ -34,15 +33,12 @@ def _of(node: str) -> Callable[[_Command], _Command]:
     return lambda command: name(timeout(command))
 
 
-_of_node = _of('feed_axis')
-
-
 @call.command('record')
 @click.argument('switch', type=click.Choice(['on', 'off']), default='on', metavar='[on|off]')
-@_of_node
+@_of()
 def _record(switch: str, node: str, timeout: float) -> None:
     """Begin a recording (on, if left out), or end it (off)."""
-    print(_answered('record', {'data': switch == 'on'}, node, timeout).message)
+    _do('record', {'data': switch == 'on'}, node, timeout)
 
 
 def _ask(name: str, service: str, request: Mapping[str, object], text: str,
@@ -51,7 +47,7 @@ def _ask(name: str, service: str, request: Mapping[str, object], text: str,
     @call.command(name, help=text, short_help=short)
     @_of(node)
     def _asked(node: str, timeout: float) -> None:
-        print(_answered(service, request, node, timeout).message)
+        _do(service, request, node, timeout)
 
 
 _ask('reset', 'reset', {}, 'Begin a new run: time, counters, faults and commands anew.')
@@ -69,11 +65,11 @@ _ask('play-next', 'play_next', {}, 'Let a paused replay send its next message.',
               help='Velocity of the drive from these steps on, m/s [default: the one in force].')
 @click.option('--force', type=float, default=math.nan, metavar='F',
               help='Force on the slider from these steps on, N [default: the one in force].')
-@_of_node
+@_of()
 def _step(steps: int, velocity: float, force: float, node: str, timeout: float) -> None:
     """Make STEPS steps (1 if left out) of an axis in lock-step, or paused; print the events and the state."""
     request = {'steps': steps, 'velocity': velocity, 'force': force}
-    answer = _answered('step', request, node, timeout, max(steps, 0) * 1e-3)
+    answer = answer_of_node('step', request, node, timeout, max(steps, 0) * 1e-3)
     from ..ros.service_call import step_lines
     show(step_lines(answer))
 
@@ -85,7 +81,7 @@ def _step(steps: int, velocity: float, force: float, node: str, timeout: float) 
 @click.option('--duration', type=float, default=math.inf, show_default=True, metavar='S',
               help='How long it lasts, s; inf: until it is cleared.')
 @click.option('--id', 'fault', default='', metavar='ID', help='Name of the fault [default: one is chosen].')
-@_of_node
+@_of()
 def _inject_fault(kind: str, value: float | None, start: float, duration: float, fault: str, node: str,
                   timeout: float) -> None:
     """Let something go wrong, of a KIND in the list, with its --value.
@@ -99,42 +95,32 @@ def _inject_fault(kind: str, value: float | None, start: float, duration: float,
     if value is None and (allowed := value_of_kind(kind)):
         raise InputError('--value', value, f'given with {kind}: {allowed}', 'add --value X')
     request = {'id': fault, 'kind': kind, 'start': start, 'duration': duration, 'value': value or 0.0}
-    print(_answered('inject_fault', request, node, timeout).message)
+    _do('inject_fault', request, node, timeout)
 
 
 @call.command('clear-faults', short_help='End faults.')
 @click.argument('ids', metavar='[ID]...', nargs=-1)
-@_of_node
+@_of()
 def _clear_faults(ids: tuple[str, ...], node: str, timeout: float) -> None:
     """End the faults of these ids, or all: then the drive takes commands again after a time-out, too."""
     if not ids:
-        print(_answered('clear_faults', {}, node, timeout).message)
+        _do('clear_faults', {}, node, timeout)
     for fault in ids:
-        print(_answered('inject_fault', {'id': fault, 'kind': 'clear'}, node, timeout).message)
+        _do('inject_fault', {'id': fault, 'kind': 'clear'}, node, timeout)
 
 
 @call.command('set', short_help='Change parameters of a node while it runs.')
 @click.argument('changes', metavar='A.B=VALUE...', nargs=-1, required=True)
-@_of_node
+@_of()
 def _set(changes: tuple[str, ...], node: str, timeout: float) -> None:
     """Change parameters of a running node, all of them or none: gains of a controller, axis.mass, rate of a replay."""
-    from ..core.errors import RefusedError
-    from ..ros.environment import answer_of_node
     from ..scene import parse_override
 
     values = dict(parse_override(change) for change in changes)
-    result = answer_of_node('set_parameters_atomically', values, node, timeout, 0.0).result
-    if not result.successful:
-        raise RefusedError(result.reason)
+    answer_of_node('set_parameters_atomically', values, node, timeout)
     print('set: ' + ', '.join(values))
 
 
-def _answered(service: str, request: Mapping[str, object], node: str, timeout: float, duration: float = 0.0) -> Any:
-    """Return the answer of a node; raises RefusedError when it refuses, StickslipError when nobody answers."""
-    from ..core.errors import RefusedError
-    from ..ros.environment import answer_of_node
-
-    answer = answer_of_node(service, request, node, timeout, duration)
-    if not answer.success:
-        raise RefusedError(answer.message)
-    return answer
+def _do(service: str, request: Mapping[str, object], node: str, timeout: float) -> None:
+    """Print what a node answers."""
+    print(answer_of_node(service, request, node, timeout).message)

@@ -2,29 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip check`: recorded runs or fresh simulations against the limits in a file, and as ISO 230 has them."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from functools import partial
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, check_sources, is_recorded, recorded_run, scene_changes, simulated, verb
-from .files import PICTURE, STDOUT, TEXT, say_written, show, whole, write_text
-
-if TYPE_CHECKING:
-    from ..check.limits import Limits
-    from ..runs import Run
+from .arguments import SceneChanges, check_sources, run_of, scene_changes, scene_duration, sources_argument, verb
+from .files import PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_json, write_text
 
 
 @verb(short_help='Check runs against limits: pass or fail.')
-@click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...',
-                shell_complete=completion.complete_scenes)
+@sources_argument
 @click.option('--limits', 'limits_file', metavar='FILE.yaml', help='The limits (docs/check.md).')
 @click.option('--circle', is_flag=True, help='Take the runs as the axes x and y of a circle (ISO 230-4).')
 @click.option('--radius', type=float, metavar='M', help='Radius of the nominal circle, m [default: as commanded].')
 @click.option('--positioning', is_flag=True, help='Print the figures of ISO 230-2 too.')
 @click.option('--plot', type=PICTURE, metavar='FILE.png|pdf|svg', help='Draw the deviation from the circle.')
-@click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
+@scene_duration
 @click.option('--junit', type=TEXT, metavar='FILE.xml',
               help='Write JUnit XML for a CI server ("-": to standard output).')
 @click.option('--json', 'json_file', type=TEXT, metavar='FILE.json',
@@ -38,14 +31,12 @@ def check(sources: tuple[str, ...], limits_file: str | None, circle: bool, radiu
     Of several, those that cannot be checked are named in the end, and the exit code is 2.  --circle takes the runs of x
     and y, or a bag of both, and of the other sense behind them.
     """
-    check_sources(sources, duration, changes)
-    _check_options(sources, limits_file, circle, radius, positioning, plot)
+    check_sources(sources, duration, changes, once=not circle)    # x goes the same way in both senses
+    _check_options(limits_file, circle, radius, positioning, plot)
     from ..check.circle import check_circle
     from ..check.limits import Limits, load_limits
     from ..check.report import check_report, check_run, checks_as_values, complaint, draw_test, junit_text, matrix
     from ..core.errors import InputError, RecordingError, VerdictError
-    from ..report.values import json_text
-    from .progress import progress_bar
 
     limits = (load_limits(limits_file) if limits_file else Limits(())).with_radius(radius)
     is_printed = STDOUT not in (junit, json_file)
@@ -53,7 +44,7 @@ def check(sources: tuple[str, ...], limits_file: str | None, circle: bool, radiu
     groups = [sources] if circle else [(source,) for source in sources]
     for group in groups:
         try:
-            runs = [(source, _run(source, limits, duration, changes)) for source in group]
+            runs = [(source, run_of(source, duration, changes, limits)) for source in group]
             run = runs[0][1]
             name = group[0] if len(groups) > 1 else run.name    # two folders may have one name
             with progress_bar('checking'):
@@ -71,11 +62,8 @@ def check(sources: tuple[str, ...], limits_file: str | None, circle: bool, radiu
         show([f'{len(found) - len(failed)} of {len(sources)} runs keep {limits_file}'], flush=True)
     if refused:      # files without these runs would look like all is well
         raise RecordingError('; '.join([*refused, *failed]))
-    if plot is not None:
-        with whole(plot) as temporary:
-            draw_test(found[0], temporary)
-    if json_file is not None:
-        write_text(json_file, [json_text(checks_as_values(found), 2)])
+    draw(plot, partial(draw_test, found[0]))
+    write_json(json_file, checks_as_values(found))
     if junit is not None:
         write_text(junit, [junit_text(found)])
     say_written(plot, json_file, junit)
@@ -83,22 +71,11 @@ def check(sources: tuple[str, ...], limits_file: str | None, circle: bool, radiu
         raise VerdictError('; '.join(failed))
 
 
-def _check_options(sources: Sequence[str], limits_file: str | None, circle: bool, radius: float | None,
-                   positioning: bool, plot: str | None) -> None:
-    if not circle and len(set(sources)) < len(sources):   # x goes the same way in both senses
-        raise click.UsageError('RUN_OR_SCENE: give each once.')
+def _check_options(limits_file: str | None, circle: bool, radius: float | None, positioning: bool, plot: str | None
+                   ) -> None:
     if circle and positioning:
         raise click.UsageError('--circle and --positioning exclude each other.')
     if not circle and (radius is not None or plot is not None):
         raise click.UsageError('--radius and --plot are for --circle.')
     if limits_file is None and not (circle or positioning):
         raise click.UsageError("Missing option '--limits'.")
-
-
-def _run(source: str, limits: 'Limits', duration: float | None, changes: SceneChanges) -> 'Run':
-    from ..check.limits import check_fit
-
-    if is_recorded(source) or duration is None:   # a scene has one
-        return recorded_run(source)
-    check_fit(limits, 0.0, duration, has_timing=False, commands=None)
-    return simulated(source, duration, changes, each_step=True)

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, is_recorded, recorded_run, scene_changes, verb
-from .files import FOLDER, new_folder, say_written, show
+from .arguments import SceneChanges, check_each_once, is_recorded, recorded_run, scene_changes, sources_argument, verb
+from .files import FOLDER, new_folder, progress_bar, say_written, show
 
 if TYPE_CHECKING:
     from ..runs import Run
@@ -19,7 +18,7 @@ _MOST = 8        # runs, rows of a picture
 
 
 @verb(short_help="Draw the paper's figures for a run, and check its statements.")
-@click.argument('runs', nargs=-1, required=True, metavar='RUN_OR_SCENE...', shell_complete=completion.complete_scenes)
+@sources_argument
 @click.option('--out', type=FOLDER, required=True, metavar='FOLDER', help='New folder for the report and the pictures.')
 @click.option('--controllers', is_flag=True, help='Set recorded runs of controllers side by side instead.')
 @click.option('--limits', metavar='FILE.yaml', help='With --controllers: check them, too (docs/check.md).')
@@ -27,7 +26,7 @@ _MOST = 8        # runs, rows of a picture
 @click.option('--duration', type=float, metavar='S',
               help='Simulated time of a scene, s [default: 10 s, or more for 20 cycles].')
 @scene_changes('Change a parameter of every scene.')
-def compare(runs: tuple[str, ...], out: str, controllers: bool, limits: str | None, window: str | None,
+def compare(sources: tuple[str, ...], out: str, controllers: bool, limits: str | None, window: str | None,
             duration: float | None, changes: SceneChanges) -> None:
     """Draw runs as the paper's figures 4, 6, 7 and 8, and say which statements of the paper hold on each.
 
@@ -38,20 +37,19 @@ def compare(runs: tuple[str, ...], out: str, controllers: bool, limits: str | No
     With --controllers: speed, error and drive force of each run in a column, and its figures of control.  Exit with 3
     when one of --limits is not kept.
     """
-    _check(runs, duration, changes)
+    _check(sources, duration, changes)
     if controllers:
-        _side_by_side(runs, limits, window, out)
+        _side_by_side(sources, limits, window, out)
         return
     if limits or window:
         raise click.UsageError('--limits and --window are for --controllers.')
     from ..compare.report import write_comparison
     from ..core.errors import VerdictError
-    from .progress import progress_bar
 
     with progress_bar('comparing') as progress:
-        given = [_given(run, changes) for run in runs]
+        given = [_given(source, changes) for source in sources]
         with new_folder('--out', out) as folder:
-            report, failed = write_comparison(given, runs, duration, folder, progress)
+            report, failed = write_comparison(given, sources, duration, folder, progress)
     show(report)
     say_written(str(Path(out) / 'report.html'))
     if failed:
@@ -59,13 +57,11 @@ def compare(runs: tuple[str, ...], out: str, controllers: bool, limits: str | No
 
 
 def _side_by_side(sources: tuple[str, ...], limits: str | None, window: str | None, out: str) -> None:
-    from ..compare.controllers import write_controllers
+    from ..compare.report import write_controllers
     from ..core.errors import VerdictError
     from ..runs.report import Window
-    from .progress import progress_bar
 
-    if len(set(sources)) < len(sources):
-        raise click.UsageError('RUN_OR_SCENE: give each once.')
+    check_each_once(sources)
     runs = {source: recorded_run(source) for source in sources}
     shown = None if window is None else Window.of(window).in_run(runs[sources[0]])
     with progress_bar('comparing'), new_folder('--out', out) as folder:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .arguments import SceneChanges, scene_changes, verb
-from .files import show
+from .arguments import SceneChanges, scene_argument, scene_changes, verb
+from .files import progress_bar, show
 
 if TYPE_CHECKING:
     from ..scene import Scene
@@ -18,7 +18,7 @@ _ACCURACY = 1e-9
 
 
 @verb(short_help='Find the value at which stick-slip begins or ends.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--of', 'name', required=True, metavar='A.B', shell_complete=completion.complete_parameters,
               help='The parameter, or an element of a list: A.B[1].')
 @click.option('--between', metavar='LOW:HIGH', help='Where to look [default: 1/100 to 100 times its value].')
@@ -29,7 +29,6 @@ def critical(scene: str, name: str, between: str | None, accuracy: float, change
     """Find where SCENE goes over from stick-slip to sliding: from rest, and from sliding."""
     from ..study.critical import critical_of
     from ..study.report import critical_report
-    from .progress import progress_bar
 
     loaded = changes.load(scene)
     over = range_given(loaded, name, between, changes)

@@ -8,12 +8,12 @@ from pathlib import Path
 import click
 
 from . import completion
-from .arguments import SceneChanges, scene_changes, verb
-from .files import FOLDER, new_folder, say_written, show
+from .arguments import SceneChanges, scene_argument, scene_changes, verb
+from .files import FOLDER, new_folder, progress_bar, say_written, show
 
 
 @verb(short_help='Propose the feed that would narrow parameters most.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--for', 'parameters', required=True, metavar='A.B,...', shell_complete=completion.complete_parameters,
               help='The parameters to narrow, as friction.static.time_constant,friction.static.limit.')
 @click.option('--duration', type=float, default=10.0, show_default=True, metavar='S', help='Of the run, s.')
@@ -42,7 +42,6 @@ def design(scene: str, parameters: str, duration: float, speeds: str | None, tra
     from ..sensitivity.experiments import Wishes, default_speeds, designed, speeds_of
     from ..sensitivity.information import Sensors
     from ..sensitivity.report import EXPERIMENT_PAGE, EXPERIMENT_SCENE, design_report, write_design
-    from .progress import progress_bar
 
     loaded = changes.load(scene)
     names = tuple(name.strip() for name in parameters.split(','))

@@ -7,13 +7,12 @@ import warnings
 
 import click
 
-from . import completion
-from .arguments import check_run, verb
+from .arguments import check_run, run_argument, verb
 from .files import FILE, TEXT, say_written, whole, write_text
 
 
 @verb(short_help='Write a recorded run as a table, CSV or Parquet.')
-@click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
+@run_argument
 @click.option('--csv', 'csv_file', type=TEXT, metavar='FILE.csv',
               help='Write numbers with 17 digits ("-": to standard output).')
 @click.option('--parquet', type=FILE, metavar='FILE.parquet', help='Write a typed, compressed table.')

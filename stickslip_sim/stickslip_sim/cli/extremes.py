@@ -23,8 +23,7 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
     _check_mpmath()
     from ..core.errors import VerdictError
     from ..proof.judges import Setup
-    from ..proof.report import json_text, markdown_text, row, table_head
-    from ..proof.suite import chosen, results
+    from ..proof.suite import chosen, json_text, markdown_text, results, row, table_head
 
     selected = chosen([number.strip().upper() for number in only.split(',')] if only is not None else [])
     print(table_head())

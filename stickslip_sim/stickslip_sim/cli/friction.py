@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from .files import check_distinct, check_file, check_picture, say_written, whole, write_text
+from .files import check_distinct, check_file, check_picture, draw, say_written, write_text
 
 _LAWS = ('best', 'table', 'gaussian', 'stribeck', 'exponential', 'hyperbolic', 'points')
 
@@ -49,9 +49,7 @@ def friction(curve: str, speed_unit: str, force_unit: str | None, normal_force: 
     made = None if out is None else found.scene(None if scene is None else load_scene(scene),
                                                 dict(map(parse_override, changes)), backward)
     print('\n'.join(found.lines()))
-    if plot is not None:
-        with whole(plot) as temporary:
-            found.draw(temporary)
+    draw(plot, found.draw)
     if out is not None and made is not None:
         write_text(out, [found.text(made, scene)])
     say_written(out, plot)

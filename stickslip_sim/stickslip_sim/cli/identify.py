@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .arguments import SceneChanges, recorded_run, scene_changes
-from .files import check_new_folder, new_folder
+from .arguments import SceneChanges, recorded_run, run_argument, scene_changes
+from .files import check_new_folder, new_folder, progress_bar
 
 if TYPE_CHECKING:
     from ..identification.many_fits import WorkFolder
 
 
 @click.command(short_help='Find the parameters of an axis from a measured run.')
-@click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
+@run_argument
 @click.option('--scene', required=True, metavar='START', shell_complete=completion.complete_scenes,
               help='The scene to begin with: a file, or a shipped one.')
 @click.option('--free', required=True, metavar='FILE.yaml', help='What is sought, and in which ranges.')
@@ -35,7 +35,7 @@ def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str
     and report.json.  Exit with 3 when the model does not fit the run; the report shows where.  Ctrl-C keeps the fits
     that are done.
     """
-    from ..study.resources import process_count
+    from ..study.folder import process_count
 
     if not resume:
         check_new_folder('--out', out)
@@ -46,7 +46,6 @@ def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str
     from ..identification.report import result_lines
     from ..identification.results import IDENTIFIED_PAGE, write_results
     from ..scene.load import read_text
-    from .progress import progress_bar
 
     start = changes.load(scene)
     measured = recorded_run(run)

@@ -47,16 +47,9 @@ def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], lead: st
     speed (docs/runs.md).
     """
     from ..core.errors import InputError
-    from ..figures.wording import headline
+    from ..figures.cycles import headline
     from ..inputs.csv_table import SPEEDS, STIFFNESSES, Rows
-    from ..inputs.measurement import (
-        COLUMNS_OPTION,
-        UNIT_OPTION,
-        Measurement,
-        check_plausible_motion,
-        pairs_of,
-        stated,
-    )
+    from ..inputs.measurement import COLUMNS_OPTION, UNIT_OPTION, Measurement, check_plausible_motion, pairs_of, stated
     from ..recording import MeasuredRun, read_run
     from ..report.model import NOTE, Section, Sentence
 

@@ -8,7 +8,7 @@ import click
 
 from . import completion
 from .arguments import verb
-from .files import PICTURE, say_written, show, whole
+from .files import PICTURE, progress_bar, say_written, show, whole
 
 _MOST_PICKS = 6
 _SHOWN = 'amplitude'
@@ -31,7 +31,6 @@ def map_(folder: str, pictures: tuple[str, ...], shown: str, picks: tuple[str, .
     from ..study.report import failed_report
     from ..study.study import study_of
     from ..study.table import read_columns
-    from .progress import progress_bar
 
     swept = Folder(folder)
     study = study_of(swept.described())

@@ -2,28 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip plot`: the picture of a run, recorded or simulated."""
 
-from typing import TYPE_CHECKING
-
 import click
 
-from . import completion
-from .arguments import SceneChanges, check_sources, is_recorded, recorded_run, scene_changes, simulated, verb
-from .files import PICTURE, check_picture, say_written, whole
-
-if TYPE_CHECKING:
-    from ..runs import Run
+from .arguments import SceneChanges, check_sources, run_of, scene_changes, scene_duration, sources_argument, verb
+from .files import PICTURE, check_picture, progress_bar, say_written, whole
 
 
 @verb(short_help='Draw any run, or several over each other.')
-@click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...',
-                shell_complete=completion.complete_scenes)
+@sources_argument
 @click.option('--window', metavar='A:B', help='Show this part, of one run beside the whole, s; A may be first_command, '
                                               '+B counts from A [default: what was commanded, last cycles of a long '
                                               'run; of several where the setpoint moves].')
 @click.option('--limits', metavar='FILE.yaml', help='Draw limits, too, and the error to their reference.')
 @click.option('--out', type=PICTURE, metavar='FILE.png|pdf|svg', help='Write the picture there; the ending decides the '
                                                                   'format [default: NAME.png, of several runs.png].')
-@click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
+@scene_duration
 @scene_changes('Change a parameter of a scene.')
 def plot(sources: tuple[str, ...], window: str | None, limits: str | None, out: str | None, duration: float | None,
          changes: SceneChanges) -> None:
@@ -34,14 +27,14 @@ def plot(sources: tuple[str, ...], window: str | None, limits: str | None, out: 
 
     Of several, or with --limits, speed, error and drive force, one over the other.
     """
-    if len(set(sources)) < len(sources):
-        raise click.UsageError('RUN_OR_SCENE: give each once.')
     from ..runs.report import Window, file_stem
-    from .progress import progress_bar
 
     asked = None if window is None else Window.of(window)
     check_sources(sources, duration, changes)
-    runs = {source: _run(source, duration, changes) for source in sources}
+    runs = {source: run_of(source, duration, changes) for source in sources}
+    for run in runs.values():
+        for note in run.notes if run.is_recorded else ():
+            print(f'note: {note}')
     first = runs[sources[0]]
     shown = None if asked is None else asked.in_run(first)
     out = ('runs.png' if len(runs) > 1 else f'{file_stem(first)}.png') if out is None else out
@@ -54,12 +47,3 @@ def plot(sources: tuple[str, ...], window: str | None, limits: str | None, out: 
         else:
             first.plot(temporary, shown)
     say_written(out)
-
-
-def _run(source: str, duration: float | None, changes: SceneChanges) -> 'Run':
-    if not is_recorded(source) and duration is not None:    # a scene has one
-        return simulated(source, duration, changes)
-    run = recorded_run(source)
-    for note in run.notes:
-        print(f'note: {note}')
-    return run

@@ -1,6 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Ctrl-C and SIGTERM end the tool, but not within an import: its module may make an error of its own of it (numpy)."""
+"""Ctrl-C and SIGTERM end the tool, but not within an import: its module may make an error of its own of it (numpy).
+
+The third Ctrl-C ends it where it is: code of a user may take the others for errors of its own.
+"""
 
 import errno
 import io
@@ -10,7 +13,10 @@ import sys
 from types import FrameType
 
 _TERMINATED = 143
+_INTERRUPTED = 130
 _LATER = 0.01    # s
+_MOST = 3        # Ctrl-C
+_given: list[int] = []    # Ctrl-C so far
 
 
 def listen() -> None:
@@ -21,8 +27,18 @@ def listen() -> None:
 
 
 def _end(signum: int, frame: FrameType | None) -> None:
+    if signum == signal.SIGINT:
+        _given.append(signum)
+        if len(_given) >= _MOST:
+            os.write(2, b'stickslip: interrupted\n')
+            os._exit(_INTERRUPTED)
+    _end_later(signum, frame)
+
+
+def _end_later(signum: int, frame: FrameType | None) -> None:
+    """End it, once no import is under way."""
     if _imports(frame):
-        signal.signal(signal.SIGALRM, lambda _, later: _end(signum, later))
+        signal.signal(signal.SIGALRM, lambda _, later: _end_later(signum, later))
         signal.setitimer(signal.ITIMER_REAL, _LATER)
     elif signum == signal.SIGINT:
         raise KeyboardInterrupt

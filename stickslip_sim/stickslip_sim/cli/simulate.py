@@ -3,20 +3,15 @@
 """`stickslip simulate`: run a scene as fast as possible and write the outputs that are asked for."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, scene_changes, verb
-from .files import FOLDER, PICTURE, STDOUT, TEXT, check_new_folder, say_written, show, whole, write_text
-
-if TYPE_CHECKING:
-    from ..runs import SimulatedRun
+from .arguments import SceneChanges, scene_argument, scene_changes, verb
+from .files import FOLDER, PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_text
 
 
 @verb(short_help='Simulate a scene: figures, tables, picture, bag.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--duration', type=float, required=True, metavar='S', help='Simulated time, s.')
 @click.option('--events', type=TEXT, metavar='FILE.csv', help='Write the events ("-": to standard output).')
 @click.option('--knots', is_flag=True, help='List the crossings of breakpoints of friction tables among the events.')
@@ -44,7 +39,6 @@ def simulate(scene: str, changes: SceneChanges, duration: float, events: str | N
     from ..runs.report import run_report
     from ..runs.simulated import check_run_times
     from .csv_tables import event_lines, sample_lines
-    from .progress import progress_bar
 
     check_run_times(duration, sample_period)
     loaded = changes.load(scene)
@@ -56,10 +50,10 @@ def simulate(scene: str, changes: SceneChanges, duration: float, events: str | N
     if receipt or bag:
         run = replace(run, receipt={**run.receipt, 'error_estimate': error_estimate(run)._asdict()})
     if bag is not None:
-        _write_bag(bag, run)
-    if plot is not None:
-        with whole(plot) as temporary:
-            run.plot(temporary)
+        from ..recording.offline_bag import write_run
+
+        write_run(bag, run)
+    draw(plot, run.plot)
     texts = [(receipt, [json_text(run.receipt, 2)]), (events, event_lines(run.events, knots)),
              (samples, sample_lines(run.sample_blocks()))]
     for path, lines in sorted(texts, key=lambda text: text[0] == STDOUT):    # its reader may leave early
@@ -68,10 +62,3 @@ def simulate(scene: str, changes: SceneChanges, duration: float, events: str | N
     if STDOUT not in (receipt, events, samples):
         show(run_report(run))
     say_written(events, samples, bag, receipt, plot)
-
-
-def _write_bag(folder: str, run: 'SimulatedRun') -> None:
-    from ..recording.offline_bag import write_run
-
-    check_new_folder('--bag', folder)    # nobody has made it meanwhile
-    write_run(folder, run)

@@ -2,18 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip sweep`: a scene at many values of its parameters, and the cycle figures of each point."""
 
-import shlex
-import sys
 
 import click
 
 from . import completion
-from .arguments import Members, SceneChanges, study_options, verb
-from .files import say_written, show
+from .arguments import Members, SceneChanges, command_line, scene_argument, study_options, verb
+from .files import progress_bar, say_written, show
 
 
 @verb(short_help='Run a scene at many values of its parameters.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--over', 'ranges', multiple=True, required=True, metavar='A.B=LOW:HIGH:N[:log]',
               shell_complete=completion.complete_parameters,
               help='Vary a parameter, or an element of a list: A.B[1]. Given again: every combination.')
@@ -29,7 +27,6 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
     from ..study.folder import Folder
     from ..study.report import sweep_report
     from ..study.sweep import carry_out
-    from .progress import progress_bar
 
     loaded = changes.load(scene)
     variations = tuple(variation(text, drawn=sobol is not None) for text in ranges)
@@ -38,6 +35,6 @@ def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, dura
     study = Study(loaded.values, sample, duration)
     folder = Folder(out)
     with progress_bar('sweeping') as progress:
-        swept = carry_out(study, folder, members, resume, shlex.join(['stickslip', *sys.argv[1:]]), progress)
+        swept = carry_out(study, folder, members, resume, command_line(), progress)
     show(sweep_report(study, swept))
     say_written(str(folder.table))

@@ -5,7 +5,7 @@
 import click
 
 from .arguments import SceneChanges, controller_options, scene_changes, verb
-from .files import PICTURE, STDOUT, TEXT, say_written, show, whole, write_text
+from .files import PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_json
 
 
 @verb(short_help='Margins of your controller, and why its loop swings.')
@@ -23,20 +23,15 @@ def tune(controller: str, scene: str, changes: SceneChanges, feed: float | None,
 
     It is probed with small signals about stick and about steady slip (docs/closed_loop.md).
     """
+    from ..closed_loop.report import tuning_report, tuning_values
     from ..closed_loop.tuning import tune as tuned
-    from ..closed_loop.tuning_report import tuning_report, tuning_values
     from ..controllers.own_controller import load_controller, parse_gain
-    from ..report.values import json_text
-    from .progress import progress_bar
 
     own = load_controller(controller, dict(map(parse_gain, gains)))
     with progress_bar('simulating') as progress:
         found = tuned(own, changes.load(scene), feed, rate, duration, progress)
-    if plot is not None:
-        with whole(plot) as temporary:
-            found.plot(temporary)
+    draw(plot, found.plot)
     if json_file != STDOUT:
         show(tuning_report(found))
-    if json_file is not None:
-        write_text(json_file, [json_text(tuning_values(found), 2)])
+    write_json(json_file, tuning_values(found))
     say_written(plot, json_file)

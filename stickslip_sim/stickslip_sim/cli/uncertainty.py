@@ -2,22 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip uncertainty`: the spread of the motion of a scene with parameters that are known only roughly."""
 
-import shlex
-import sys
 from pathlib import Path
 
 import click
 
-from . import completion
-from .arguments import Members, SceneChanges, study_options, verb
+from .arguments import Members, SceneChanges, command_line, scene_argument, study_options, verb
 from .critical import range_given
-from .files import PICTURE, check_new_folder, new_folder, say_written, show, whole, write_text
+from .files import PICTURE, check_new_folder, new_folder, progress_bar, say_written, show, whole, write_json, write_text
 
 _RESULT = 'uncertainty.json'
 
 
 @verb(short_help='Run a scene with parameters that are known only roughly.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--with', 'file', required=True, metavar='FILE.yaml', help='The distributions of its parameters.')
 @click.option('--of', 'critical', metavar='A.B', help='Find how the critical value of this parameter spreads.')
 @click.option('--between', metavar='LOW:HIGH', help='With --of: where to look [default: 1/100 to 100 times its value].')
@@ -34,14 +31,12 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
     critical value of a parameter that spreads, as of the feed; then it is done in one go.
     """
     _check(critical, between, duration, resume)
-    from ..report.values import json_text
     from ..scene.load import named
     from ..study import Saltelli, Study, report
     from ..study import critical as values_of
     from ..study.folder import Folder
     from ..study.sweep import carry_out
     from ..study.uncertainty import load_uncertain, uncertainty_of
-    from .progress import progress_bar
 
     known = load_uncertain(file)
     with named(file):
@@ -52,9 +47,9 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
     result = str(Path(out) / _RESULT)
     if critical is None:
         with progress_bar('sweeping') as progress:
-            swept = carry_out(study, Folder(out), members, resume, shlex.join(['stickslip', *sys.argv[1:]]), progress)
+            swept = carry_out(study, Folder(out), members, resume, command_line(), progress)
         found = uncertainty_of(sample, swept.columns)
-        write_text(result, [json_text(report.uncertainty_values(sample, found))])
+        write_json(result, report.uncertainty_values(sample, found), 1)
         said = report.uncertainty_report(study, sample, swept, found)
     else:
         spread = values_of.CriticalStudy(study, range_given(loaded, critical, between, changes))
@@ -64,7 +59,7 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
         spreads = values_of.spreads_of(sample, values)
         with new_folder('--out', out) as folder:
             write_text(str(folder / 'critical.csv'), report.critical_lines(spread, values))
-            write_text(str(folder / _RESULT), [json_text(report.spread_values(spread, sample, spreads))])
+            write_json(str(folder / _RESULT), report.spread_values(spread, sample, spreads), 1)
         said = report.spread_report(spread, sample, spreads)
     if plot is not None:
         from ..study.diagrams import draw_critical_spread, draw_uncertainty  # matplotlib takes half a second

@@ -4,13 +4,12 @@
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, recorded_run, scene_changes, verb
-from .files import FOLDER, new_folder, say_written, show
+from .arguments import SceneChanges, recorded_run, run_argument, scene_changes, verb
+from .files import FOLDER, new_folder, progress_bar, say_written, show
 
 
 @verb(short_help='Run a recorded run again; with --set, what would have been.')
-@click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
+@run_argument
 @click.option('--out', type=FOLDER, metavar='FOLDER',
               help='With --set: new folder for figures, picture and scene of what if.')
 @scene_changes('What if this parameter had been another?')
@@ -23,12 +22,10 @@ def verify(run: str, changes: SceneChanges, out: str | None) -> None:
     if out is not None and not changes.overrides:
         raise click.UsageError('--out is of no use alone: give --set A.B=VALUE too.')
     from ..check import verification
-    from ..check.origin import doubts_about
+    from ..check.remake import doubts_about, feedback_note, other_run, other_scene
     from ..check.report import beside_table, verdict_report, write_what_if
-    from ..check.what_if import feedback_note, other_run, other_scene
     from ..core.errors import VerdictError
     from ..report.model import NOTE, Sentence
-    from .progress import progress_bar
 
     recorded = recorded_run(run)
     doubts = [Sentence(doubt, NOTE) for doubt in doubts_about(recorded)]

@@ -25,8 +25,7 @@ from ..scene import Scene
 from ..simulation.random_stream import Stream, stream
 from ..simulation.solved_axis import events_in
 from ..solvers import exact
-from .run import ClosedLoopRun
-from .setpoint import as_setpoints
+from .loop import ClosedLoopRun, as_setpoints
 
 if TYPE_CHECKING:
     from .study import Attempt, LoopStudy

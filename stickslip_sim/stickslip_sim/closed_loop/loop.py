@@ -1,24 +1,216 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The loop itself: step, measure, ask, command; as a node in lock-step does it, but without a node."""
+"""The loop itself: step, measure, ask, command, as a node in lock-step does it; its run and its setpoint."""
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import Any
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
 
-from ..controllers.own_controller import Measurement, OwnController
-from ..core.arrays import Numbers
+import numpy as np
+
+from ..check.limits import Limits, load_limits, outcomes_of
+from ..check.report import Checked
+from ..controllers import Moves, Setpoint
+from ..controllers.own_controller import Measurement, OwnController, raised
+from ..core.arrays import Columns, Numbers
 from ..core.errors import ControllerError, InputError, SolverError
 from ..core.time_grid import Instants, decimal, instants
-from ..core.types import Instant, Progress, tuple_of
+from ..core.types import Event, Instant, Mode, Progress, Sample, tuple_of
+from ..figures.cycles import summary
 from ..inputs import SceneOrName, scene_of
+from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, column_of
 from ..realtime.commands import Watchdog
-from ..runs.samples import MOST_IN_MEMORY
-from ..runs.simulated import CostMeter
+from ..recording.messages import slider_joint
+from ..recording.offline_bag import NO_ORDERS, Orders, write_steps
+from ..recording.run import RunFacts
+from ..runs import SimulatedRun
+from ..runs.run import normal_force_of
+from ..runs.samples import MOST_IN_MEMORY, HeldSamples
+from ..runs.simulated import CostMeter, columns_of_rows, receipt_of
 from ..scene import Scene, scene_from_values
-from ..simulation import Measured
-from .run import ClosedLoopRun, LoopRecord
-from .setpoint import Given, as_setpoints, setpoints_at
+from ..scene.schema import MOST_POINTS
+from ..simulation import Measured, Rig, RigEvent
+from ..simulation.step_result import Mark, TimedRigEvent, marks_of_events
+
+_NOTHING = Measured(0.0, 0.0, 0.0, 0.0)    # before the first measurement
+
+
+class LoopRecord:
+    """What came of the steps so far; `start` is the mode at the start."""
+
+    def __init__(self, start: Mode) -> None:
+        self.start = start
+        self.rows: list[bytes] = []                                        # the numbers of samples
+        self.measured: list[Measured | None] = []
+        self.commands: list[tuple[int, float | None, float | None]] = []   # step from which on, m/s, N
+        self.events: list[tuple[int, Event]] = []                          # step into which it fell
+        self.rig_events: list[tuple[int, RigEvent]] = []
+
+    def note(self, step: int, events: list[Event], rig_events: list[RigEvent]) -> None:
+        """Take what happened in a step, and to the rig at its start."""
+        self.events += [(step, event) for event in events]
+        self.rig_events += [(step, event) for event in rig_events]
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedLoopRun(SimulatedRun):
+    """A run whose drive followed a controller.
+
+    `told` is what was measured at each step; a setpoint, if there is one, is known at each step.
+    """
+
+    told: Sequence[Measured | None] = ()
+    orders: Orders = NO_ORDERS
+    controller: str = ''
+    is_commanded: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, scene: Scene, record: LoopRecord, rig: Rig, controller: str, every: int, wanted: Numbers | None,
+           cost: tuple[float, float]) -> 'ClosedLoopRun':
+        """Return the run of a rig that was made so far, with what it cost (CPU and wall time, s)."""
+        columns = columns_of_rows(np.frombuffer(b''.join(record.rows)).reshape(-1, len(Sample._fields)))
+        time, simulator, events = columns['time'], rig.simulator, [event for _, event in record.events]
+        end = max(float(time[-1]), float(scene.time.step))
+        figures = summary(events, end, record.start)
+        receipt = receipt_of(scene, end, float(scene.time.step), figures, simulator.root_iterations,
+                             simulator.sample(), simulator.energy, *cost)
+        receipt['controller'] = {'name': controller, 'rate': scene.time.rate / every}
+        receipt['commands'] = {'received': len(record.commands), **{
+            name: getattr(rig.counts, name) for name in ('refused', 'lost', 'limited', 'timed_out')}}
+        setpoint = {} if wanted is None else {'time': time, 'position': wanted[:len(time), 0],
+                                              'velocity': wanted[:len(time), 1]}
+        orders = Orders(record.commands, record.events, record.rig_events)
+        return cls(scene, end, None, events, HeldSamples({**columns, **normal_force_of(scene, time)}), figures, receipt,
+                   setpoint=setpoint, orders=orders, controller=controller, told=record.measured)
+
+    @property
+    def source(self) -> str:
+        """Which controller drove it, and for how long."""
+        return f'simulated for {self.duration:g} s with {self.controller} in the loop'
+
+    @cached_property
+    def measured(self) -> Columns:
+        """What was measured at each step, by the fields of Measurement; where it was lost, what was measured before."""
+        lost = np.array([one is None for one in self.told])
+        latest = np.maximum.accumulate(np.where(lost, 0, np.arange(len(lost))))
+        rows = np.array([one or _NOTHING for one in self.told], dtype=np.float64)[latest]
+        return {'time': self.samples['time'], **{name: rows[:, i] for i, name in enumerate(Measured._fields)},
+                'drive_force': self.samples['drive_force'], 'is_lost': lost}
+
+    @property
+    def commands(self) -> Columns:
+        """The velocities that were ordered, each at the start of the first step in which it holds."""
+        (steps, velocities), _ = self.orders.commanded()
+        return {'time': self.samples['time'][steps - 1], 'velocity': velocities}
+
+    @property
+    def marks(self) -> list[Mark]:
+        """When faults were in force, and commands lost, limited or missing."""
+        times = self.samples['time']
+        return marks_of_events((TimedRigEvent(float(times[max(step - 1, 0)]), event.kind, event.id,
+                                              event.fault.kind if event.fault else '', event.number)
+                                for step, event in self.orders.rig_events), self.begin, self.end)
+
+    def check(self, limits: Limits | str | os.PathLike[str]) -> Checked:
+        """Return the outcome of each limit in a file (docs/check.md), `passed` for all; raises InputError."""
+        limits = limits if isinstance(limits, Limits) else load_limits(os.fspath(limits))
+        return Checked(self.name, self, outcomes_of(limits, self))
+
+    def save(self, folder: Path | str) -> None:
+        """Record the run as a bag, that of a node in lock-step with this controller.
+
+        Raises RecordingError; a folder that exists is not touched, one that was begun vanishes on an error.
+        """
+        write_steps(folder, RunFacts.of(self.scene), self.samples, self.orders, self.receipt, self.setpoint,
+                    slider_joint(self.scene.joint_prefix))
+
+
+_KINDS = 'a function of time, Moves, arrays (times, positions), or a CSV file with the columns time and position'
+_NAMES = (('time', 't'), TIMES), (('position', 'x'), LENGTHS)
+Given = Callable[[float], object] | Moves | tuple[Any, Any] | str | os.PathLike[str]
+
+
+def setpoints_at(given: Given, times: Numbers) -> Numbers:
+    """Return position (m) and velocity (m/s) at times as columns.
+
+    Where only positions are given, the velocity is that of the way to the next of these times.  Raises InputError.
+    """
+    if isinstance(given, str | os.PathLike):
+        table = _table(Path(given))
+        found = _interpolated(table.columns[0], table.columns[1], times)
+    elif isinstance(given, Moves) or callable(given):
+        found = _called(given.at if isinstance(given, Moves) else given, times)
+    else:
+        found = _interpolated(*_arrays(given), times)
+    if found.ndim == 1:
+        speeds = np.diff(found) / np.diff(times)
+        found = np.stack([found, np.append(speeds, speeds[-1:])], axis=1)
+    return found
+
+
+def _called(function: Callable[[float], object], times: Numbers) -> Numbers:
+    answers: list[Any] = []
+    for time in times.tolist():
+        try:
+            answers.append(function(time))
+        except Exception as error:
+            raise InputError(f'setpoint({time:g})', raised(error), 'a position, m', 'correct the function') from None
+    try:
+        found = np.array(answers, dtype=np.float64)
+        if found.shape in ((len(times),), (len(times), 2)) and np.isfinite(found).all():
+            return found
+    except (TypeError, ValueError):
+        pass
+    time, answer = next((time, answer) for time, answer in zip(times.tolist(), answers)
+                        if not _is_setpoint(answer, np.shape(answers[0])))
+    raise InputError(f'setpoint({time:g})', answer, 'a finite position, m, or (position, velocity)',
+                     'return the same kind at each time')
+
+
+def _is_setpoint(answer: Any, shape: tuple[int, ...]) -> bool:
+    try:
+        row = np.array(answer, dtype=np.float64)
+    except (TypeError, ValueError):
+        return False
+    return row.shape == shape and shape in ((), (2,)) and bool(np.isfinite(row).all())
+
+
+def _arrays(given: object) -> tuple[Numbers, Numbers]:
+    try:
+        times, positions = (np.asarray(part, dtype=np.float64) for part in given)  # type: ignore[attr-defined]
+    except (TypeError, ValueError):
+        raise InputError('setpoint', given, _KINDS, 'give one of these') from None
+    if times.ndim != 1 or times.shape != positions.shape or not len(times):
+        raise InputError('setpoint', f'arrays of shapes {times.shape} and {positions.shape}',
+                         'times and positions, one as many as the other', 'give (times, positions)')
+    for name, values in (('times', times), ('positions', positions)):
+        for row in np.flatnonzero(~np.isfinite(values))[:1].tolist():
+            raise InputError(f'setpoint {name}[{row}]', float(values[row]), 'finite', 'correct it')
+    return times, positions
+
+
+def _interpolated(times: Numbers, positions: Numbers, wanted: Numbers) -> Numbers:
+    for row in np.flatnonzero(np.diff(times) <= 0.0)[:1].tolist():
+        raise InputError(f'setpoint times[{row + 1}]', float(times[row + 1]), f'after the one before it, '
+                         f'{float(times[row])!r} s', 'sort the rows by time, and leave out what is there twice')
+    begin, end = float(times[0]), float(times[-1])
+    if begin > 0.0 or end < wanted[-1]:
+        raise InputError('setpoint', f'{begin:g} to {end:g} s', f'from 0 to the end of the run, {wanted[-1]:g} s',
+                         'let it hold to the end, or make the run shorter')
+    return np.interp(wanted, times, positions)
+
+
+def _table(path: Path) -> CsvTable:
+    return CsvTable('setpoint', path, [column_of(path, *names, 'setpoint') for names in _NAMES], MOST_POINTS)
+
+
+def as_setpoints(columns: Numbers | None, count: int) -> list[Setpoint | None]:
+    """Return them one by one, None where there is none."""
+    return [None] * count if columns is None else [tuple_of(Setpoint, row) for row in columns.tolist()]
+
 
 _REPORTED_EVERY = 1000   # steps
 _ROUNDED = 1e-6          # steps, that a duration may be off by: 0.1 + 0.2 s

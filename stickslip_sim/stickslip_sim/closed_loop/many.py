@@ -20,16 +20,13 @@ from ..core.paths import check_picture_name
 from ..core.types import Progress
 from ..inputs import SceneOrName, scene_of
 from ..report.values import json_text
-from ..study.folder import Folder
-from ..study.resources import process_count
+from ..study.folder import Folder, process_count, refusing
 from ..study.sample import Distribution, EvenGrid, Sobol
-from ..study.sweep import Workers, carry_out, processes, rows_by
-from ..study.table import columns, in_words, stretches
-from ..study.uncertainty import PERCENTS, load_uncertain
+from ..study.sweep import Workers, carry_out, columns_of, processes
+from ..study.table import in_words
+from ..study.uncertainty import PERCENTS, load_uncertain, percentiles
 from ..study.variation import GAIN, Variation, variation
-from .loop import measured_scene, steps_of
-from .run import ClosedLoopRun
-from .setpoint import Given, setpoints_at
+from .loop import ClosedLoopRun, Given, measured_scene, setpoints_at, steps_of
 from .study import FOLDER_FORM, Attempt, LoopStudy, Outcome, loop_parameter, repr_of
 
 Range = Any    # LOW:HIGH[:N][:log], or a tuple of these numbers
@@ -79,7 +76,8 @@ class ClosedLoops:
     @cached_property
     def percentiles(self) -> dict[str, dict[int, float] | None]:
         """The percentiles of each figure, of the points that have it."""
-        return {name: _percentiles(self.columns[name]) for name in self.study.figure_names[1:]}
+        found = {name: percentiles(self.columns[name]) for name in self.study.figure_names[1:]}
+        return {name: dict(zip(PERCENTS, values)) if values else None for name, values in found.items()}
 
     @cached_property
     def worst(self) -> dict[str, int]:
@@ -120,7 +118,7 @@ class ClosedLoops:
         names = over or self.study.names[:2]
         if len(names) != 2 or len(set(names)) != 2 or not set(names) <= set(self.study.names):
             raise InputError('over', names, f'two of {", ".join(self.study.names)}', 'a map needs two that vary')
-        from ..plots.pass_map import plot_pass_map  # matplotlib takes half a second
+        from ..plots.stability_map import plot_pass_map  # matplotlib takes half a second
         from ..plots.style import Scale
 
         variations = {one.name: one for one in self.study.sample.variations}
@@ -192,28 +190,20 @@ def close_loops(controller: Any, scene: SceneOrName, duration: float, over: Mapp
         raise InputError('controller', repr_of(controller), 'one that other processes can import',
                          "put it in a file and give 'FILE.py:NAME', or leave workers out")
     members: AbstractContextManager[Workers | None] = processes(count) if count > 1 else nullcontext()
-    return run_loops(study, None if out is None else Folder(os.fspath(out), FOLDER_FORM), members, resume, '', progress)
+    return run_loops(study, None if out is None else os.fspath(out), members, resume, '', progress)
 
 
-def run_loops(study: LoopStudy, folder: Folder | None, workers: AbstractContextManager[Workers | None],
-              resume: bool, command: str, progress: Progress = None) -> ClosedLoops:
+def run_loops(study: LoopStudy, out: str | None, workers: AbstractContextManager[Workers | None], resume: bool,
+              command: str, progress: Progress = None) -> ClosedLoops:
     """Run a study, into a folder where there is one; raises as `close_loops` does."""
-    if folder is not None:
-        swept = carry_out(study, folder, workers, resume, command, progress)
-        found = ClosedLoops(study, swept.columns, swept.ran)
-        try:
-            found.keep(folder.path)
-        except OSError as error:
-            raise InputError('--out', str(folder.path), 'a place that can be written', f'{error.strerror or error}; '
-                             'what is done is kept, --resume goes on') from None
-        return found
-    parts = []
-    with workers as members:
-        for (_, last), rows in zip(stretches(study), rows_by(study, stretches(study), members)):
-            parts.append(rows)
-            if progress:
-                progress(last / study.count)
-    return ClosedLoops(study, columns(study, np.concatenate(parts)), study.count)
+    if out is None:
+        with workers as members:
+            return ClosedLoops(study, columns_of(study, members, progress), study.count)
+    swept = carry_out(study, Folder(out, FOLDER_FORM), workers, resume, command, progress)
+    found = ClosedLoops(study, swept.columns, swept.ran)
+    with refusing(Path(out)):
+        found.keep(out)
+    return found
 
 
 def loop_study(controller: Any, scene: SceneOrName, duration: float, over: Mapping[str, Range], samples: int | None,
@@ -293,16 +283,6 @@ def _variation(name: str, given: Range, drawn: bool) -> Variation:
             raise InputError(name, given, '(LOW, HIGH), (LOW, HIGH, N) or LOW:HIGH[:N][:log]',
                              'for example (0.8, 1.2)') from None
     return variation(f'{name}={given}', drawn, loop_parameter)
-
-
-def _percentiles(values: Numbers) -> dict[int, float] | None:
-    known = values[~np.isnan(values)]
-    if not len(known):
-        return None
-    with np.errstate(invalid='ignore'):
-        found = np.percentile(known, PERCENTS)
-    upper = np.percentile(known, PERCENTS, method='higher')   # no number lies between two infinite ones
-    return dict(zip(PERCENTS, np.where(np.isnan(found), upper, found).tolist()))
 
 
 def _drawn(draw: Callable[[Path], None], path: Path) -> None:

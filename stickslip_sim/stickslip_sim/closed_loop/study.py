@@ -27,8 +27,7 @@ from ..scene.values import overridden
 from ..study.sample import EvenGrid, Sobol
 from ..study.study import check_variations, versions_of_a_study
 from ..study.variation import GAIN, MOTION_SECTIONS, changes_at, parameter_of
-from .loop import own_controller, run_loop, steps_between, steps_of
-from .run import ClosedLoopRun
+from .loop import ClosedLoopRun, own_controller, run_loop, steps_between, steps_of
 
 SECTIONS = (*MOTION_SECTIONS, 'encoder', 'command', 'faults', GAIN)
 FOLDER_FORM = 'stickslip closed loops 1'

@@ -17,10 +17,8 @@ from ..core.time_grid import instants
 from ..core.types import Mode, Progress
 from ..inputs import SceneOrName, scene_of
 from ..scene import Scene, scene_from_values
-from .linear_loop import LinearLoop, check_delays
-from .loop import close_loop, measured_scene, steps_between
-from .probing import NotLinearError, linear_controller, probe_length
-from .run import ClosedLoopRun
+from .linear_loop import LinearLoop, NotLinearError, check_delays, linear_controller, probe_length
+from .loop import ClosedLoopRun, close_loop, measured_scene, steps_between
 
 _DEFAULT_FEED = 1e-3     # m/s, of a scene whose drive stands still
 _BAND = 0.25             # of the swing about its middle: no crossing while it stays within

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..advise.trial_runs import default_duration
+from ..check.limits import load_limits
+from ..check.report import check_run, checks_as_values, complaint, control_figures, matrix, plot_runs
 from ..core.types import Progress
 from ..figures.catalogue import head_of, read_in, unit_of
-from ..figures.wording import headline
+from ..figures.cycles import headline
 from ..plots.style import labelled
 from ..recording import MeasuredRun
 from ..report.html import write_page
@@ -21,7 +23,7 @@ from ..runs.report import named_apart
 from ..scene import Scene
 from .cycle_figures import figures_of, write_beside
 from .fresh import AsMeasured, as_measured, simulate_densely
-from .pictures import draw
+from .pictures import PICTURE_KINDS, draw
 from .statements import Finding, Statement, StatementOutcome, findings_on
 
 _SHOWN = 12   # cycles of a run that are listed, the first and the last of them
@@ -159,3 +161,30 @@ def _cell(value: Any, scale: float) -> str:
         return '–'
     number = float(value) * scale   # 'inf' is a text in a report
     return f'{number:.6g}' if math.isfinite(number) else '∞'
+
+
+# Runs of controllers side by side: a picture with a column for each, their figures of control, their limits.
+
+_CAPTION = ('Speed, error and drive force of each run; blue: the slider sticks.  The error is that to the setpoint, or '
+            'to the drive where a run has none.')
+
+
+def write_controllers(runs: Mapping[str, Run], limits_file: str | None, window: tuple[float, float] | None, folder: Path
+                      ) -> tuple[list[Part], str]:
+    """Write picture and report of runs by their names, in a window (s) or where they move, into a folder that exists.
+
+    Returns the report for people, and which limits were not kept.  Raises InputError and RecordingError.
+    """
+    limits = None if limits_file is None else load_limits(limits_file)
+    begin, end = plot_runs(runs, *(folder / f'controllers.{kind}' for kind in PICTURE_KINDS), limits=limits,
+                           window=window, columns=True)
+    figures = [check_run(name, run, control_figures(run, (begin, end), limits)) for name, run in runs.items()]
+    checked = [check_run(name, run, limits) for name, run in runs.items()] if limits else []
+    tables: list[Part] = [f'from t = {begin:g} to {end:g} s:', matrix(figures)]
+    if checked:
+        tables += [f'limits of {limits_file}:', matrix(checked)]
+    write_page(folder, 'Controllers: ' + ', '.join(runs), [Picture(folder / 'controllers.svg', _CAPTION), *tables], {
+        'versions': versions(), 'window': [begin, end],
+        'figures': {one.name: {outcome.name: outcome.value for outcome in one.outcomes} for one in figures},
+        'limits': checks_as_values(checked) if checked else None})
+    return tables, '; '.join(filter(None, (complaint(one, str(limits_file)) for one in checked)))

@@ -177,14 +177,14 @@ def _imported(place: str, file: Path) -> Any:
         fix = suggestion(str(file), paths_beside(file, ['.py']), 'check the path')
         raise InputError('controller', place, f'{_FORM}, a file that is there', fix)
     spec = importlib.util.spec_from_file_location(file.stem, file.resolve())
-    if spec is None or spec.loader is None:
+    if spec is None:
         raise InputError('controller', place, _FORM, 'name a file that ends in .py')
     module = importlib.util.module_from_spec(spec)
     sys.modules.setdefault(file.stem, module)      # dataclasses look there; a module of the installation stays
     if (folder := str(file.resolve().parent)) not in sys.path:
         sys.path.insert(0, folder)                 # as for a script: modules beside it
     try:
-        spec.loader.exec_module(module)
+        exec(compile(file.read_bytes(), file.resolve(), 'exec'), vars(module))    # no import, which Ctrl-C waits for
     except (Exception, SystemExit) as error:
         raise InputError('controller', place, 'a file that can be imported', raised(error)) from None
     return module

@@ -112,7 +112,8 @@ _LARGEST = 1e15    # factor
 class Wanted(NamedTuple):
     """A column: its `name` and `unit`, the options that gave them, and the `units` that it may have.
 
-    A number in it stands for so many units as `factor` says.  `is_stated`: the unit is not that of the heading.
+    A number in it stands for so many units as `factor` says.  `is_stated`: the unit is not that of the heading;
+    `is_default`: nobody said so, it is SI.
     """
 
     name_option: str
@@ -122,6 +123,7 @@ class Wanted(NamedTuple):
     units: Mapping[str, Fraction]
     factor: Fraction = Fraction(1)
     is_stated: bool = True
+    is_default: bool = False
 
     @property
     def in_si(self) -> Fraction:
@@ -140,7 +142,8 @@ def wanted_column(name_option: str, name: str, unit_option: str, unit: str | Non
     if factor == 0 or abs(factor) > _LARGEST:
         raise InputError(unit_option, unit, 'a unit, or one with a factor that is not 0', 'for example 35.15 N')
     word = scaled[2] if scaled else unit or next(iter(units))
-    return Wanted(name_option, name, unit_option, word, units, factor, not takes_heading or unit is not None)
+    return Wanted(name_option, name, unit_option, word, units, factor, not takes_heading or unit is not None,
+                  unit is None)
 
 
 def column_of(path: Path, names: Sequence[str], units: Mapping[str, Fraction], option: str, unit: str | None = None,
@@ -527,6 +530,10 @@ def in_unit_of(column: Wanted, heading: str, below: Sequence[str]) -> Wanted:
         if unit is not None and unit != unit_of(column.unit_option, column.unit, column.units):
             raise InputError(column.unit_option, column.unit, f'{unit}, as the heading says: {heading}',
                              f'give {column.unit_option} as {unit}, or correct the heading')
+        unknown = _IN_BRACKETS.search(heading) if column.is_default and column.name != heading else None
+        if unknown and not named_unit(heading, column.units):
+            raise InputError(column.unit_option, unknown[1], 'one of ' + ', '.join(column.units),
+                             f'{heading} has another one: state it, or how much a 1 is, as "35.15 {column.unit}"')
         return column
     said = [cell for cell in ('' if heading in column.units else heading, *below) if unit_in(cell, column.units)]
     if said:

@@ -15,24 +15,9 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.transforms import ScaledTranslation
 
 from ..core.arrays import Numbers
-from .style import (
-    BLACK,
-    BLUE,
-    DOUBLE_COLUMN,
-    GREY,
-    JOURNAL,
-    MILLI,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    legend_of,
-    letter,
-    lines_by_label,
-    save,
-)
+from . import style
 
-_BRANCHES = ((ORANGE, 'solid'), (RED, (0, (5.0, 1.5))))
+_BRANCHES = ((style.ORANGE, 'solid'), (style.RED, (0, (5.0, 1.5))))
 
 
 class Curve(NamedTuple):
@@ -66,51 +51,52 @@ class _Look(NamedTuple):
 
 
 _BOTH = _Look(1.0, '', 'solid', 'white')
-_EACH = _Look(1.0, ', forwards', 'solid', BLACK), _Look(-1.0, ', backwards', (0, (5.0, 1.5)), 'white')
+_EACH = _Look(1.0, ', forwards', 'solid', style.BLACK), _Look(-1.0, ', backwards', (0, (5.0, 1.5)), 'white')
 _BAR = 2.5                # points: the width of the bar of static friction
 _BESIDE = _BAR / 2 / 72   # in
 
 
 def plot_characteristics(sides: Sequence[Characteristics], *paths: Path | str) -> None:
     """Draw kinetic and static friction beside each other: of both directions, or forwards and backwards."""
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, 2.7), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+    with rc_context(style.JOURNAL):
+        figure = Figure(figsize=(style.DOUBLE_COLUMN, 2.7), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
         kinetic, static = figure.subplots(1, 2, sharey=True)
         looks = _EACH if len(sides) > 1 else (_BOTH,)
         for friction, look in zip(sides, looks):
             _kinetic(kinetic, friction, look)
             _static(static, friction, look)
-        ends = [look.sign * MILLI * friction.decelerating.x[-1] for friction, look in zip(sides, looks)]
+        ends = [look.sign * style.MILLI * friction.decelerating.x[-1] for friction, look in zip(sides, looks)]
         kinetic.set_xlim(min(0.0, *ends), max(ends))
         kinetic.set_xlabel(f'velocity / (mm/s){", backwards below 0" if len(sides) > 1 else ""}')
         static.set_xlim(0.0, sides[0].static.x[-1])
         for panel, name in zip((kinetic, static), 'ab'):
             panel.set_ylim(bottom=0.0)
-            lines = lines_by_label(panel)
+            lines = style.lines_by_label(panel)
             panel.legend(lines.values(), lines)
-            letter(panel, name)
-        save(figure, *paths)
+            style.letter(panel, name)
+        style.save(figure, *paths)
 
 
 def _kinetic(panel: Axes, friction: Characteristics, look: _Look) -> None:
-    for (label, curve), (colour, style) in zip(friction.accelerating.items(), _BRANCHES):
-        panel.plot(look.sign * MILLI * curve.x, curve.y, color=colour, linestyle=style, label=f'accelerating, {label}')
+    for (label, curve), (colour, dashes) in zip(friction.accelerating.items(), _BRANCHES):
+        panel.plot(look.sign * style.MILLI * curve.x, curve.y, color=colour, linestyle=dashes,
+                   label=f'accelerating, {label}')
     label = 'decelerating' if friction.accelerating else 'kinetic'
-    panel.plot(look.sign * MILLI * friction.decelerating.x, friction.decelerating.y, color=PURPLE,
+    panel.plot(look.sign * style.MILLI * friction.decelerating.x, friction.decelerating.y, color=style.PURPLE,
                linestyle=(0, (6.0, 1.5, 1.0, 1.5)), label=label)
     beside = 0.0 if look is _BOTH else look.sign * _BESIDE
     place = panel.transData + ScaledTranslation(beside, 0.0, panel.figure.dpi_scale_trans)
-    panel.plot([0.0, 0.0], [friction.static.y[0], friction.static_limit or friction.static.y[-1]], color=BLUE,
+    panel.plot([0.0, 0.0], [friction.static.y[0], friction.static_limit or friction.static.y[-1]], color=style.BLUE,
                linewidth=_BAR, solid_capstyle='butt', label='static', clip_on=False, transform=place)
     panel.set_ylabel('coefficient of friction')
 
 
 def _static(panel: Axes, friction: Characteristics, look: _Look) -> None:
-    panel.plot(*friction.static, color=BLUE, linestyle=look.dashes, label=f'static{look.name}')
+    panel.plot(*friction.static, color=style.BLUE, linestyle=look.dashes, label=f'static{look.name}')
     if friction.static_limit is not None:
-        panel.axhline(friction.static_limit, color=GREY, linestyle=(0, (4.0, 2.0)), linewidth=0.8,
+        panel.axhline(friction.static_limit, color=style.GREY, linestyle=(0, (4.0, 2.0)), linewidth=0.8,
                       label='upon prolonged rest')
-    marks: dict[str, Any] = {'linestyle': '', 'markerfacecolor': look.inside, 'markeredgecolor': BLACK,
+    marks: dict[str, Any] = {'linestyle': '', 'markerfacecolor': look.inside, 'markeredgecolor': style.BLACK,
                              'clip_on': False}
     if len(friction.break_aways.x):
         panel.plot(*friction.break_aways, marker='o', markersize=4.0, label=f'break-aways of the run{look.name}',
@@ -170,8 +156,8 @@ class KnownFriction(NamedTuple):
 
 def plot_known_friction(directions: Mapping[str, KnownFriction], path: Path | str) -> None:
     """Draw kinetic friction over speed and static friction over the time at rest, a row for each direction by name."""
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, _HEIGHT + _ROW * (len(directions) - 1)),
+    with rc_context(style.JOURNAL):
+        figure = Figure(figsize=(style.DOUBLE_COLUMN, _HEIGHT + _ROW * (len(directions) - 1)),
                         layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.05))
         panels = figure.subplots(len(directions), 2, squeeze=False, sharey=True, width_ratios=(3, 2))
         for (kinetic, static), (name, friction) in zip(panels, directions.items()):
@@ -180,9 +166,9 @@ def plot_known_friction(directions: Mapping[str, KnownFriction], path: Path | st
             kinetic.set_title(name, fontsize=8.0, loc='left')
         panels[0, 0].set_ylim(0.0, max(map(_top, directions.values())))
         for panel, name in zip(panels.flat, ascii_lowercase):
-            letter(panel, name)
-        legend_of(figure, 'upper center', panels[0, 1], panels[0, 0], ncols=4)
-        save(figure, path)
+            style.letter(panel, name)
+        style.legend_of(figure, 'upper center', panels[0, 1], panels[0, 0], ncols=4)
+        style.save(figure, path)
 
 
 def _top(friction: KnownFriction) -> float:
@@ -195,27 +181,27 @@ def _top(friction: KnownFriction) -> float:
 
 def _kinetic_found(panel: Axes, friction: KnownFriction) -> None:
     step = max(1, len(friction.points.places) // _MOST)
-    panel.plot(MILLI * friction.points.places[::step], friction.points.values[::step], '.', color=GREY, markersize=2.0,
-               alpha=0.4, markeredgewidth=0.0)
-    _curve(panel, friction.kinetic, MILLI, BLUE, 'identified, 95 % band')
+    panel.plot(style.MILLI * friction.points.places[::step], friction.points.values[::step], '.', color=style.GREY,
+               markersize=2.0, alpha=0.4, markeredgewidth=0.0)
+    _curve(panel, friction.kinetic, style.MILLI, style.BLUE, 'identified, 95 % band')
     if friction.accelerating is not None:
-        _curve(panel, friction.accelerating, MILLI, ORANGE, 'accelerating, after the usual rest')
-    panel.plot(MILLI * friction.start_kinetic.places, friction.start_kinetic.values, color=GREY, linewidth=0.9,
-               linestyle=(0, (4.0, 2.0)), label='scene to start with')
+        _curve(panel, friction.accelerating, style.MILLI, style.ORANGE, 'accelerating, after the usual rest')
+    panel.plot(style.MILLI * friction.start_kinetic.places, friction.start_kinetic.values, color=style.GREY,
+               linewidth=0.9, linestyle=(0, (4.0, 2.0)), label='scene to start with')
     bins = friction.bins
     if len(bins.places):
-        panel.errorbar(MILLI * bins.places, bins.middles, (bins.middles - bins.low, bins.high - bins.middles), fmt='o',
-                       color=BLACK, markersize=3.0, markerfacecolor='white', elinewidth=0.7, zorder=4.0,
+        panel.errorbar(style.MILLI * bins.places, bins.middles, (bins.middles - bins.low, bins.high - bins.middles),
+                       fmt='o', color=style.BLACK, markersize=3.0, markerfacecolor='white', elinewidth=0.7, zorder=4.0,
                        label='measured: median and quartiles')
     panel.set(xlabel='speed / (mm/s)', ylabel='coefficient of friction')
-    panel.set_xlim(0.0, MILLI * friction.kinetic.places[-1])
+    panel.set_xlim(0.0, style.MILLI * friction.kinetic.places[-1])
 
 
 def _static_found(panel: Axes, friction: KnownFriction) -> None:
-    _curve(panel, friction.static, 1.0, BLUE, 'identified, 95 % band')
-    panel.plot(friction.start_static.places, friction.start_static.values, color=GREY, linewidth=0.9,
+    _curve(panel, friction.static, 1.0, style.BLUE, 'identified, 95 % band')
+    panel.plot(friction.start_static.places, friction.start_static.values, color=style.GREY, linewidth=0.9,
                linestyle=(0, (4.0, 2.0)), label='scene to start with')
-    panel.plot(friction.break_aways.places, friction.break_aways.values, 'o', color=BLACK, markersize=3.0,
+    panel.plot(friction.break_aways.places, friction.break_aways.values, 'o', color=style.BLACK, markersize=3.0,
                markerfacecolor='white', zorder=4.0, label='measured: median and quartiles')
     panel.set(xlabel='time at rest / s')
     panel.set_title('○ break-aways that were measured' if len(friction.break_aways.places)
@@ -226,4 +212,4 @@ def _static_found(panel: Axes, friction: KnownFriction) -> None:
 def _curve(panel: Axes, band: Band, scale: float, colour: str, label: str) -> None:
     panel.plot(scale * band.places, band.values, color=colour, linewidth=1.4, label=label, zorder=3.0)
     panel.fill_between(scale * band.places, band.values - band.half, band.values + band.half, alpha=0.35, linewidth=0.0,
-                       color=SKY if colour == BLUE else colour)
+                       color=style.SKY if colour == style.BLUE else colour)

@@ -15,26 +15,11 @@ from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
-from .style import (
-    BLACK,
-    BLUE,
-    DOUBLE_COLUMN,
-    GREEN,
-    GREY,
-    JOURNAL,
-    MILLI,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    legend_of,
-    letter,
-    save,
-)
+from . import style
 
 _HEIGHT = 4.6   # in
 _OPEN = 'white'
-_COLOURS = (BLUE, ORANGE, GREEN, PURPLE, RED)
+_COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.PURPLE, style.RED)
 _DASHES = ((0, (4.0, 1.5)), (0, (1.0, 1.2)), (0, (4.0, 1.5, 1.0, 1.5)), (0, (6.0, 3.0)))
 _LOWEST = 0.7   # of the lowest speed above 0: there lines begin on a logarithmic axis
 _REST = 0.4     # of the same: there such an axis shows what was measured at rest
@@ -67,16 +52,16 @@ def plot_speeds(points: MeasuredPoints) -> Numbers:
 def plot_friction_fits(points: MeasuredPoints, lines: Sequence[FittedLine], heading: str, path: Path | str) -> None:
     """Draw points and lines, the first of them as the best, above the residuals; left over the speed, right its log."""
     speeds = plot_speeds(points)
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, _HEIGHT), layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+    with rc_context(style.JOURNAL):
+        figure = Figure(figsize=(style.DOUBLE_COLUMN, _HEIGHT), layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
         panels = figure.subplots(2, 2, sharey='row', sharex='col', height_ratios=(2.2, 1.0))
         for column, log in enumerate((False, True)):
             _curves(panels[0, column], points, speeds, lines, log)
             _residuals(panels[1, column], points, lines, log)
         _axes(panels, points)
         panels[0, 0].set_title(heading, loc='left', fontsize=8.0)
-        legend_of(figure, 'upper center', panels[0, 0], ncols=4)
-        save(figure, path)
+        style.legend_of(figure, 'upper center', panels[0, 0], ncols=4)
+        style.save(figure, path)
 
 
 def _curves(panel: Axes, points: MeasuredPoints, speeds: Numbers, lines: Sequence[FittedLine], log: bool) -> None:
@@ -84,9 +69,9 @@ def _curves(panel: Axes, points: MeasuredPoints, speeds: Numbers, lines: Sequenc
     for chosen, face, label in _directions(points):
         panel.plot(_shown(points.speeds[chosen], points, log), points.coefficients[chosen], 'o', label=label,
                    zorder=1.5 if many else 4.0, markersize=_size(points), markerfacecolor=face,
-                   markeredgecolor=GREY if many else BLACK, markeredgewidth=0.7)
+                   markeredgecolor=style.GREY if many else style.BLACK, markeredgewidth=0.7)
     drawn = slice(1, None) if log else slice(None)    # rest is no place on a logarithmic axis
-    places = MILLI * speeds[drawn]
+    places = style.MILLI * speeds[drawn]
     for k, line in enumerate(lines):
         panel.plot(places, line.coefficients[drawn], color=_COLOURS[k % len(_COLOURS)], zorder=3.0 - 0.1 * k,
                    linestyle='solid' if k == 0 else _DASHES[(k - 1) % len(_DASHES)],
@@ -94,13 +79,14 @@ def _curves(panel: Axes, points: MeasuredPoints, speeds: Numbers, lines: Sequenc
     best = lines[0]
     if len(best.band):
         panel.fill_between(places, (best.coefficients - best.band)[drawn], (best.coefficients + best.band)[drawn],
-                           color=SKY, alpha=0.35, linewidth=0.0, label=f'95 % band of {best.label.split()[0]}')
+                           color=style.SKY, alpha=0.35, linewidth=0.0, label=f'95 % band of {best.label.split()[0]}')
     if log and not points.speeds.all():
-        panel.plot([MILLI * _rest(points)], best.coefficients[:1], '_', color=BLUE, markersize=9.0, markeredgewidth=1.6)
+        panel.plot([style.MILLI * _rest(points)], best.coefficients[:1], '_', color=style.BLUE, markersize=9.0,
+                   markeredgewidth=1.6)
 
 
 def _residuals(panel: Axes, points: MeasuredPoints, lines: Sequence[FittedLine], log: bool) -> None:
-    panel.axhline(0.0, color=BLACK, linewidth=0.6)
+    panel.axhline(0.0, color=style.BLACK, linewidth=0.6)
     places = _shown(points.speeds, points, log)
     for k, line in enumerate(lines if len(points.speeds) <= _FEW else lines[:1]):
         left = 1e3 * (points.coefficients - line.at_points)
@@ -110,7 +96,8 @@ def _residuals(panel: Axes, points: MeasuredPoints, lines: Sequence[FittedLine],
                            linestyle=_DASHES[(k - 1) % len(_DASHES)])
                 continue
             panel.plot(places[chosen], left[chosen], 'o', markersize=_size(points),
-                       markerfacecolor=face if face == _OPEN else BLUE, markeredgecolor=BLUE, markeredgewidth=0.7)
+                       markerfacecolor=face if face == _OPEN else style.BLUE, markeredgecolor=style.BLUE,
+                       markeredgewidth=0.7)
 
 
 def _directions(points: MeasuredPoints) -> list[tuple[NDArray[np.bool_], str, str]]:
@@ -121,7 +108,7 @@ def _directions(points: MeasuredPoints) -> list[tuple[NDArray[np.bool_], str, st
 
 
 def _dark(points: MeasuredPoints) -> str:
-    return GREY if len(points.speeds) > _FEW else BLACK
+    return style.GREY if len(points.speeds) > _FEW else style.BLACK
 
 
 def _size(points: MeasuredPoints) -> float:
@@ -130,7 +117,7 @@ def _size(points: MeasuredPoints) -> float:
 
 def _shown(speeds: Numbers, points: MeasuredPoints, log: bool) -> Numbers:
     """Return speeds in mm/s; on a logarithmic axis rest is moved to its left end."""
-    return MILLI * (np.maximum(speeds, _rest(points)) if log else speeds)
+    return style.MILLI * (np.maximum(speeds, _rest(points)) if log else speeds)
 
 
 def _rest(points: MeasuredPoints) -> float:
@@ -140,13 +127,13 @@ def _rest(points: MeasuredPoints) -> float:
 def _axes(panels: NDArray[np.object_], points: MeasuredPoints) -> None:
     for row, label in enumerate(('friction coefficient', 'residual / 10⁻³')):
         panels[row, 0].set_ylabel(label)
-        letter(panels[row, 0], 'ac'[row])
-        letter(panels[row, 1], 'bd'[row])
+        style.letter(panels[row, 0], 'ac'[row])
+        style.letter(panels[row, 1], 'bd'[row])
     for panel in panels[:, 1]:
         panel.set_xscale('log')
         panel.xaxis.set_major_formatter(FuncFormatter(lambda speed, _: f'{speed:g}'))
     panels[1, 0].set_xlabel('speed / (mm/s)')
     panels[1, 1].set_xlabel('speed / (mm/s), logarithmic')
     if not points.speeds.all():
-        panels[0, 1].annotate('rest', (MILLI * _rest(points), 0.0), xycoords=('data', 'axes fraction'),
-                              xytext=(2.0, 3.0), textcoords='offset points', fontsize=7.0, color=GREY)
+        panels[0, 1].annotate('rest', (style.MILLI * _rest(points), 0.0), xycoords=('data', 'axes fraction'),
+                              xytext=(2.0, 3.0), textcoords='offset points', fontsize=7.0, color=style.GREY)

@@ -15,32 +15,12 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
 from ..core.types import Mode
+from . import style
 from .paper_panels import legend_below, part
 from .run import DrawnRun, TimeWindow
-from .style import (
-    BLACK,
-    BLUE,
-    DOUBLE_COLUMN,
-    GREEN,
-    JOURNAL,
-    MILLI,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    dress,
-    force_unit,
-    legend_of,
-    letter,
-    line,
-    lines_by_label,
-    save,
-    shortened,
-    thinned,
-)
 
 _LONGEST = 45   # letters of a name
-_COLOURS = RED, BLUE, GREEN, ORANGE, PURPLE
+_COLOURS = style.RED, style.BLUE, style.GREEN, style.ORANGE, style.PURPLE
 _FORCES = {'drive_force': 'drive force', 'friction_force': 'friction force'}
 _DASHES = {'drive_force': 'solid', 'friction_force': (0, (4.0, 1.6))}
 
@@ -60,13 +40,13 @@ def plot_over_measured(runs: Mapping[str, DrawnOver], time: str, *paths: Path | 
     shown = {name: _part(run, length) for name, run in runs.items()}
     known = [name for name in _FORCES if all(np.isfinite(shown[each][name]).all() for each, run in runs.items()
                                              if run.is_measured)]
-    scale, unit = force_unit(*(columns[name] for columns in shown.values() for name in known))
+    scale, unit = style.force_unit(*(columns[name] for columns in shown.values() for name in known))
     colours = iter(_COLOURS * len(runs))
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, 5.6), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+    with rc_context(style.JOURNAL):
+        figure = Figure(figsize=(style.DOUBLE_COLUMN, 5.6), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
         panels = list(figure.subplots(2, 2).flat)
         for name, run in sorted(runs.items(), key=lambda item: not item[1].is_measured):
-            look = (BLACK, 2.6, 0.4) if run.is_measured else (next(colours), 1.0, 1.0)
+            look = (style.BLACK, 2.6, 0.4) if run.is_measured else (next(colours), 1.0, 1.0)
             _draw(panels, _named(name, run), shown[name], known, scale, look)
         for panel, label in zip(panels, (f'force / {unit}', 'velocity / (mm/s)', 'travel / mm', f'force / {unit}')):
             panel.set_ylabel(label)
@@ -74,7 +54,7 @@ def plot_over_measured(runs: Mapping[str, DrawnOver], time: str, *paths: Path | 
             if not panel.has_data():
                 panel.text(0.5, 0.5, 'not measured', transform=panel.transAxes, ha='center', va='center')
         for panel, name in zip(panels, 'abcd'):
-            letter(panel, name)
+            style.letter(panel, name)
         if len(known) > 1:
             panels[0].set_title('solid: drive force, dashed: friction force', fontsize=7.0, loc='right')
         elif known:
@@ -82,11 +62,11 @@ def plot_over_measured(runs: Mapping[str, DrawnOver], time: str, *paths: Path | 
         if known:
             panels[3].set_title(_FORCES[known[-1]], fontsize=7.0, loc='right')
         legend_below(figure, panels[1])
-        save(figure, *paths)
+        style.save(figure, *paths)
 
 
 def _named(name: str, run: DrawnOver) -> str:
-    name = shortened(name, _LONGEST)
+    name = style.shortened(name, _LONGEST)
     return f'{name}, measured' if run.is_measured else name
 
 
@@ -101,14 +81,14 @@ def _draw(panels: list[Axes], label: str, columns: Mapping[str, Numbers], known:
     """Draw a run into the four panels."""
     colour, width, alpha = look
     for force in known:
-        panels[0].plot(*thinned(columns['time'], columns[force] * scale), color=colour, linewidth=width, alpha=alpha,
-                       linestyle=_DASHES[force])
+        panels[0].plot(*style.thinned(columns['time'], columns[force] * scale), color=colour, linewidth=width,
+                       alpha=alpha, linestyle=_DASHES[force])
     for panel, what in ((panels[1], 'velocity'), (panels[2], 'travel')):
         if np.isfinite(columns[what]).all():
-            panel.plot(*thinned(columns['time'], columns[what] * MILLI), color=colour, linewidth=width, alpha=alpha,
-                       label=label)
+            panel.plot(*style.thinned(columns['time'], columns[what] * style.MILLI), color=colour, linewidth=width,
+                       alpha=alpha, label=label)
     if known:
-        panels[3].plot(columns['velocity'] * MILLI, columns[known[-1]] * scale, color=colour, linewidth=width,
+        panels[3].plot(columns['velocity'] * style.MILLI, columns[known[-1]] * scale, color=colour, linewidth=width,
                        alpha=alpha)
 
 
@@ -118,7 +98,8 @@ _MICRO, _FINE = 1e6, 1e-3   # m to µm; m: smaller errors are shown so
 _FAR = 4.0                  # of the largest value: a limit farther away would leave the curves no room
 _TITLES, _LABELS = 100, 130  # letters that titles and labels have room for, side by side
 _DASHED: tuple[Any, ...] = (0, (5, 2))
-_LOOKS = [(colour, style) for style in ('solid', _DASHED) for colour in (BLUE, RED, GREEN, ORANGE, SKY)]
+_LOOKS = [(colour, dashes) for dashes in ('solid', _DASHED)
+          for colour in (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.SKY)]
 
 
 class Bound(NamedTuple):
@@ -144,13 +125,14 @@ def plot_over_each_other(runs: Sequence[DrawnRun], window: TimeWindow, bounds: S
         row[0].set_ylabel(label)
         panels = list(row) if are_apart else list(row) * len(runs)
         for k, (run, panel, curve) in enumerate(zip(runs, panels, curves)):
-            colour, style = _LOOKS[0 if are_apart else k]
+            colour, dashes = _LOOKS[0 if are_apart else k]
             if np.isfinite(curve).any():
-                panel.plot(*thinned(run.motion['time'], curve * scale), color=colour, linewidth=1.1, linestyle=style,
-                           label='' if are_apart else run.title)
+                panel.plot(*style.thinned(run.motion['time'], curve * scale), color=colour, linewidth=1.1,
+                           linestyle=dashes, label='' if are_apart else run.title)
         for run, panel, of_run in zip(runs, panels, bounds):
             if name == 'speed' and 'velocity' in run.setpoint:
-                line(panel, run.setpoint, 'velocity', scale, 'setpoint', color=BLACK, linewidth=1.0, linestyle=_DASHED)
+                style.line(panel, run.setpoint, 'velocity', scale, 'setpoint', color=style.BLACK, linewidth=1.0,
+                           linestyle=_DASHED)
             for bound in of_run:
                 if bound.panel == name and bound.begin < window.end and bound.end > window.begin:
                     _draw_bound(panel, bound, window, scale, bound.value > _FAR * _largest(curves))
@@ -158,15 +140,15 @@ def plot_over_each_other(runs: Sequence[DrawnRun], window: TimeWindow, bounds: S
         column[0].set_title(fill(run.title, _TITLES // columns), loc='left', fontsize=11, fontweight='bold')
         _shade_sticks(column, run)
     for panel in grid.flat:
-        dress(panel, has_legend=False)
+        style.dress(panel, has_legend=False)
         panel.set_xlim(*window)
         panel.ticklabel_format(useOffset=False)
         if panel in grid[-1]:
             panel.set_xlabel('time / s')
-    longest = max(map(len, lines_by_label(*grid.flat)), default=0)
-    legend_of(figure, 'upper left', *grid.flat, frameon=False, fontsize=9,
-              ncols=min(max(_LABELS // (longest + 6), 1), 5))
-    save(figure, *paths)
+    longest = max(map(len, style.lines_by_label(*grid.flat)), default=0)
+    style.legend_of(figure, 'upper left', *grid.flat, frameon=False, fontsize=9,
+                    ncols=min(max(_LABELS // (longest + 6), 1), 5))
+    style.save(figure, *paths)
 
 
 def _curves_of(runs: Sequence[DrawnRun]) -> list[tuple[str, str, float, list[Numbers]]]:
@@ -177,10 +159,10 @@ def _curves_of(runs: Sequence[DrawnRun]) -> list[tuple[str, str, float, list[Num
     motions, have_setpoint = [run.motion for run in runs], all(run.setpoint for run in runs)
     errors = [(np.interp(motion['time'], run.setpoint['time'], run.setpoint['position']) if have_setpoint
                else motion['drive_position']) - motion['position'] for run, motion in zip(runs, motions)]
-    scale, unit = (_MICRO, 'µm') if _largest(errors) < _FINE else (MILLI, 'mm')
+    scale, unit = (_MICRO, 'µm') if _largest(errors) < _FINE else (style.MILLI, 'mm')
     forces = [motion['drive_force'] for motion in motions]
-    force_scale, force = force_unit(*forces)
-    return [('speed', 'speed / (mm/s)', MILLI, [motion['velocity'] for motion in motions]),
+    force_scale, force = style.force_unit(*forces)
+    return [('speed', 'speed / (mm/s)', style.MILLI, [motion['velocity'] for motion in motions]),
             ('error', f'{"setpoint" if have_setpoint else "drive end"} less slider / {unit}', scale, errors),
             ('force', f'drive force / {force}', force_scale, forces)]
 
@@ -191,7 +173,7 @@ def _largest(curves: Sequence[Numbers]) -> float:
 
 def _draw_bound(panel: Axes, bound: Bound, window: TimeWindow, scale: float, is_far: bool) -> None:
     panel.hlines([] if is_far else [scale * bound.value, -scale * bound.value], max(bound.begin, window.begin),
-                 min(bound.end, window.end), color=PURPLE, linewidth=1.4, linestyle=(0, (6, 2, 1, 2)),
+                 min(bound.end, window.end), color=style.PURPLE, linewidth=1.4, linestyle=(0, (6, 2, 1, 2)),
                  label=f'limit {bound.name}' + (', beyond the panel' if is_far else ''))
 
 
@@ -199,5 +181,5 @@ def _shade_sticks(panels: Iterable[Axes], run: DrawnRun) -> None:
     starts, modes = run.modes
     ends, sticks = np.append(starts[1:], max(starts[-1], run.motion['time'][-1])), modes == Mode.STICK
     for panel in panels:
-        panel.broken_barh(np.column_stack([starts, ends - starts])[sticks].tolist(), (0.0, 1.0), facecolors=SKY,
+        panel.broken_barh(np.column_stack([starts, ends - starts])[sticks].tolist(), (0.0, 1.0), facecolors=style.SKY,
                           alpha=0.22, transform=panel.get_xaxis_transform(), linewidth=0.0, label='stick', zorder=0)

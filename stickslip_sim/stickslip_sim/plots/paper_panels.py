@@ -16,22 +16,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
 from ..core.types import Mode
-from .style import (
-    BLACK,
-    BLUE,
-    DOUBLE_COLUMN,
-    JOURNAL,
-    MILLI,
-    MODE_COLOURS,
-    ORANGE,
-    RED,
-    legend_outside,
-    letter,
-    lines_by_label,
-    save,
-    shortened,
-    thinned,
-)
+from . import style
 
 KILO = 1e-3   # N to kN
 _EARLIER = '#b0b0b0'
@@ -70,13 +55,13 @@ class DrawnMotion(NamedTuple):
 
 def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
     """Draw forces (a), velocity and acceleration (d) over time; (b), (e) the same magnified; the loops (c), (f)."""
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, 7.8), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+    with rc_context(style.JOURNAL):
+        figure = Figure(figsize=(style.DOUBLE_COLUMN, 7.8), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
         panels = list(figure.subplots(3, 2).flat)
         opening, slip = part(motion.columns, *motion.opening), part(motion.columns, *motion.slip)
         label = 'time / s'
         if motion.break_away is not None:
-            slip['time'] = (slip['time'] - motion.break_away) * MILLI
+            slip['time'] = (slip['time'] - motion.break_away) * style.MILLI
             label = 'time after the break-away / ms'
         forces(panels[0], opening, 'time / s')
         _speed_and_acceleration(panels[1], opening, 'time / s')
@@ -86,17 +71,17 @@ def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
         _drive_force_loop(panels[4], motion)
         phase_plane(panels[5], motion)
         for panel, name in zip(panels, _LETTERS):
-            letter(panel, name)
+            style.letter(panel, name)
         legend_below(figure, panels[4])
-        save(figure, *paths)
+        style.save(figure, *paths)
 
 
 def legend_below(figure: Figure, *panels: Axes) -> None:
     """Explain the lines of panels below the whole picture, those of one name once."""
-    lines = lines_by_label(*panels)
+    lines = style.lines_by_label(*panels)
     labels = sorted(lines, key=lambda label: _MODE_NAMES.index(label) if label in _MODE_NAMES else -1)
-    legend_outside(figure, 'lower center', [lines[label] for label in labels], labels, ncols=_columns(labels),
-                   handlelength=3.6)
+    style.legend_outside(figure, 'lower center', [lines[label] for label in labels], labels, ncols=_columns(labels),
+                         handlelength=3.6)
 
 
 def _columns(labels: Sequence[str]) -> int:
@@ -111,10 +96,10 @@ def part(columns: Mapping[str, Numbers], begin: float, end: float) -> dict[str, 
 
 def forces(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
     """Draw the drive force and the friction force over time."""
-    for name, what, colour, style, width in (('friction_force', 'friction force', RED, 'solid', 1.3),
-                                             ('drive_force', 'drive force', BLACK, _DRIVE_DASHES, 1.0)):
-        panel.plot(*thinned(columns['time'], columns[name] * KILO), color=colour, linestyle=style, linewidth=width,
-                   label=what)
+    for name, what, colour, dashes, width in (('friction_force', 'friction force', style.RED, 'solid', 1.3),
+                                              ('drive_force', 'drive force', style.BLACK, _DRIVE_DASHES, 1.0)):
+        panel.plot(*style.thinned(columns['time'], columns[name] * KILO), color=colour, linestyle=dashes,
+                   linewidth=width, label=what)
     panel.set(xlabel=label, ylabel='force / kN')
     panel.margins(x=0.0)
     panel.legend(**_ABOVE)
@@ -122,14 +107,14 @@ def forces(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
 
 def velocity(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:
     """Draw the velocity over time."""
-    panel.plot(*thinned(columns['time'], columns['velocity'] * MILLI), color=BLUE, label='velocity')
+    panel.plot(*style.thinned(columns['time'], columns['velocity'] * style.MILLI), color=style.BLUE, label='velocity')
     panel.set(xlabel=label, ylabel='velocity / (mm/s)')
     panel.margins(x=0.0)
 
 
 def friction_loop(panel: Axes, motion: DrawnMotion) -> None:
     """Draw the friction force over the velocity: all of it, and the stressed cycle by mode."""
-    _orbit(panel, motion, ('velocity', MILLI), ('friction_force', KILO))
+    _orbit(panel, motion, ('velocity', style.MILLI), ('friction_force', KILO))
     panel.set(xlabel='velocity / (mm/s)', ylabel='friction force / kN')
 
 
@@ -138,8 +123,8 @@ def _drive_force_loop(panel: Axes, motion: DrawnMotion) -> None:
     shown = _rows(motion, *motion.orbit)
     slips = motion.columns['mode'][shown] != Mode.STICK
     force = np.where(slips, motion.columns['drive_force'][shown] * KILO, np.nan)
-    panel.plot(motion.columns['velocity'][shown] * MILLI, force, color=BLACK, linewidth=0.6, linestyle=_DRIVE_DASHES,
-               label='drive force, in slip')
+    panel.plot(motion.columns['velocity'][shown] * style.MILLI, force, color=style.BLACK, linewidth=0.6,
+               linestyle=_DRIVE_DASHES, label='drive force, in slip')
     panel.set_ylabel('friction and drive force / kN')
 
 
@@ -147,7 +132,7 @@ def _speed_and_acceleration(panel: Axes, columns: Mapping[str, Numbers], label: 
     """Draw velocity (left axis) and acceleration (right axis), with their zeros at one height."""
     velocity(panel, columns, label)
     twin = panel.twinx()
-    twin.plot(*thinned(columns['time'], columns['acceleration']), color=ORANGE, linestyle=(0, (3.0, 1.2)),
+    twin.plot(*style.thinned(columns['time'], columns['acceleration']), color=style.ORANGE, linestyle=(0, (3.0, 1.2)),
               linewidth=0.9, label='acceleration')
     twin.set_ylabel('acceleration / (m/s²)')
     twin.grid(visible=False)
@@ -159,7 +144,7 @@ def _speed_and_acceleration(panel: Axes, columns: Mapping[str, Numbers], label: 
 
 def phase_plane(panel: Axes, motion: DrawnMotion) -> None:
     """Draw the velocity over the stretch of the drive spring, which closes where the position would run away."""
-    _orbit(panel, motion, (_STRETCH, MILLI), ('velocity', MILLI))
+    _orbit(panel, motion, (_STRETCH, style.MILLI), ('velocity', style.MILLI))
     panel.set(xlabel=f'{_STRETCH} s − x / mm', ylabel='velocity / (mm/s)')
 
 
@@ -176,9 +161,9 @@ def _orbit(panel: Axes, motion: DrawnMotion, *axes: tuple[str, float]) -> None:
     extent = np.array([high * scale - low * scale or 1.0 for (low, high), scale in ranges])
     labels = dict(zip(Mode, _MODE_NAMES))
     for mode, rows in _stretches(motion, *motion.cycle):
-        panel.plot(x[rows], y[rows], color=MODE_COLOURS[mode], linestyle=_DASHES[mode], linewidth=1.5,
+        panel.plot(x[rows], y[rows], color=style.MODE_COLOURS[mode], linestyle=_DASHES[mode], linewidth=1.5,
                    label=labels.pop(mode, None), solid_capstyle='butt')
-        _arrow(panel, np.stack([x[rows], y[rows]], axis=1), extent, MODE_COLOURS[mode])
+        _arrow(panel, np.stack([x[rows], y[rows]], axis=1), extent, style.MODE_COLOURS[mode])
 
 
 def _stretches(motion: DrawnMotion, begin: float, end: float) -> Iterator[tuple[Mode, slice]]:
@@ -225,8 +210,8 @@ ALIKE = 5.0               # so many times as large an extent, and rows do not sh
 
 def plot_side_by_side(motions: Mapping[str, DrawnMotion], *paths: Path | str) -> None:
     """Draw a row for each run, by its name; runs that are alike have the same axes."""
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, _ROW * len(motions) + _LEGEND),
+    with rc_context(style.JOURNAL):
+        figure = Figure(figsize=(style.DOUBLE_COLUMN, _ROW * len(motions) + _LEGEND),
                         layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
         grid = figure.subplots(len(motions), 3, squeeze=False)
         lengths = _lengths(list(motions.values()))
@@ -238,9 +223,9 @@ def plot_side_by_side(motions: Mapping[str, DrawnMotion], *paths: Path | str) ->
         for panel in grid[:-1].flat:
             panel.set_xlabel('')
         for panel, name in zip(grid.flat, ascii_lowercase):
-            letter(panel, name)
+            style.letter(panel, name)
         legend_below(figure, grid[0, 0], *grid[:, 2])
-        save(figure, *paths)
+        style.save(figure, *paths)
 
 
 def _lengths(motions: Sequence[DrawnMotion]) -> list[float]:
@@ -256,7 +241,7 @@ def _draw_row(row: Sequence[Axes], name: str, motion: DrawnMotion, length: float
     columns['time'] = columns['time'] - begin
     forces(row[0], columns, 'time / s')
     row[0].set_title(' ', loc='left', fontsize=8.0, pad=_ABOVE_LETTERS)   # room; the name itself widens no panel
-    row[0].annotate(shortened(name, _LONGEST), (0.0, 1.0), xytext=(0.0, _ABOVE_LETTERS), xycoords='axes fraction',
+    row[0].annotate(style.shortened(name, _LONGEST), (0.0, 1.0), xytext=(0.0, _ABOVE_LETTERS), xycoords='axes fraction',
                     textcoords='offset points', fontsize=8.0, in_layout=False)
     legend = row[0].get_legend()
     if legend is not None:

@@ -12,25 +12,9 @@ from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
-from .style import (
-    BLACK,
-    BLUE,
-    DOUBLE_COLUMN,
-    GREEN,
-    GREY,
-    JOURNAL,
-    MILLI,
-    ORANGE,
-    PURPLE,
-    RED,
-    SKY,
-    legend_of,
-    letter,
-    save,
-    thinned,
-)
+from . import style
 
-_COLOURS = (BLUE, RED, GREEN, ORANGE, PURPLE, SKY, BLACK)
+_COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PURPLE, style.SKY, style.BLACK)
 _MARKERS = 'os^Dv'
 _MICRO, _PERCENT = 1e6, 100.0
 _OVER_TIME, _ROW, _MARGIN = 4.2, 0.24, 0.9   # in
@@ -52,25 +36,26 @@ def plot_experiment(run: ProposedRun, changes: Mapping[str, Numbers], kinds: Seq
     (kinds, parameters), as shares.
     """
     heights = [_OVER_TIME, _ROW * len(kinds) + _MARGIN]
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, sum(heights)), layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.04))
+    with rc_context(style.JOURNAL):
+        figure = Figure(figsize=(style.DOUBLE_COLUMN, sum(heights)),
+                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.04))
         upper, lower = figure.subfigures(2, 1, height_ratios=heights)
         _over_time(upper, run, changes)
         _left(lower, list(changes), kinds, deviations, known)
-        save(figure, *paths)
+        style.save(figure, *paths)
 
 
 def _over_time(part: SubFigure, run: ProposedRun, changes: Mapping[str, Numbers]) -> None:
     feed, position, change = part.subplots(3, 1, sharex=True)
-    feed.plot(*thinned(run.times, run.feed * MILLI), color=BLACK)
+    feed.plot(*style.thinned(run.times, run.feed * style.MILLI), color=style.BLACK)
     feed.set_ylabel('feed / (mm/s)')
-    position.plot(*thinned(run.times, run.position * MILLI), color=BLACK)
+    position.plot(*style.thinned(run.times, run.position * style.MILLI), color=style.BLACK)
     position.set_ylabel('position / mm')
     for k, (name, values) in enumerate(changes.items()):
-        change.plot(*thinned(run.times, values * _MICRO), color=_colour(k), linewidth=0.8, label=name)
+        change.plot(*style.thinned(run.times, values * _MICRO), color=_colour(k), linewidth=0.8, label=name)
     change.set(ylabel='change for 1 % / µm', xlabel='time / s')
     for name, panel in zip('abc', (feed, position, change)):
-        letter(panel, name)
+        style.letter(panel, name)
         panel.margins(x=0.0)
     part.align_ylabels()
 
@@ -80,11 +65,11 @@ def _left(part: SubFigure, parameters: Sequence[str], kinds: Sequence[str], devi
     for k, name in enumerate(parameters):
         panel.plot(deviations[:, k] * _PERCENT, range(len(kinds)), linestyle='', marker=_MARKERS[k % len(_MARKERS)],
                    color=_colour(k), markersize=4.5, label=name)
-    panel.axvline(known * _PERCENT, color=GREY, linestyle='dashed', linewidth=0.8, label='before')
+    panel.axvline(known * _PERCENT, color=style.GREY, linestyle='dashed', linewidth=0.8, label='before')
     panel.set(xscale='log', yticks=range(len(kinds)), yticklabels=kinds, ylim=(len(kinds) - 0.5, -0.5),
               xlabel='standard deviation of each parameter after the run / %')
-    letter(panel, 'd')
-    legend_of(part, 'upper right', panel, ncols=2)
+    style.letter(panel, 'd')
+    style.legend_of(part, 'upper right', panel, ncols=2)
 
 
 def _colour(k: int) -> str:

@@ -18,23 +18,7 @@ from matplotlib.figure import Figure
 from ..core.arrays import Numbers
 from ..core.types import Event, EventKind, Mode
 from ..simulation.step_result import Mark
-from .style import (
-    BLACK,
-    BLUE,
-    GREEN,
-    GREY,
-    MILLI,
-    MODE_COLOURS,
-    ORANGE,
-    PURPLE,
-    RED,
-    dress,
-    force_unit,
-    head,
-    line,
-    save,
-    thinned,
-)
+from . import style
 
 # The panels of a run over time, in one window: as lines, or as envelopes where lines would run into each other.
 
@@ -124,7 +108,8 @@ _MANY = 50            # break-aways that are marked smaller
 _CLOSEST, _CLOSEST_POSITION = 1e-4, 1e-6   # of the largest value: what changes less is drawn as a constant
 _DASHES = (0, (5, 2))
 _ENVELOPE = 'envelope'
-_MARK_COLOURS = {'refused': RED, 'limited': ORANGE, 'lost': PURPLE, 'time lost': BLACK, 'time-out': RED}
+_MARK_COLOURS = {'refused': style.RED, 'limited': style.ORANGE, 'lost': style.PURPLE, 'time lost': style.BLACK,
+                 'time-out': style.RED}
 
 
 class WindowPanels:
@@ -138,12 +123,12 @@ class WindowPanels:
 
     def position(self, panel: Axes) -> None:
         """Draw the positions of the slider and of the drive end of the spring."""
-        line(panel, self._motion, 'drive_position', MILLI, 'drive end of the spring', color=GREY, linewidth=1.0,
-             linestyle=_DASHES)
-        line(panel, self._motion, 'position', MILLI, 'slider', color=BLUE, linewidth=1.4)
+        style.line(panel, self._motion, 'drive_position', style.MILLI, 'drive end of the spring', color=style.GREY,
+                   linewidth=1.0, linestyle=_DASHES)
+        style.line(panel, self._motion, 'position', style.MILLI, 'slider', color=style.BLUE, linewidth=1.4)
         if self._run.setpoint:
-            line(panel, _part(self._run.setpoint, self._window), 'position', MILLI, 'setpoint', color=BLACK,
-                 linewidth=0.9, linestyle=_DASHES)
+            style.line(panel, _part(self._run.setpoint, self._window), 'position', style.MILLI, 'setpoint',
+                       color=style.BLACK, linewidth=0.9, linestyle=_DASHES)
         panel.set_ylabel('position / mm')
         _no_closer(panel, _CLOSEST_POSITION)
 
@@ -151,49 +136,50 @@ class WindowPanels:
         """Draw the stretch of the drive spring: the position of its drive end less that of the slider."""
         stretch = self._motion['drive_position'] - self._motion['position']
         fine = float(np.abs(stretch[np.isfinite(stretch)]).max(initial=0.0)) < _FINE
-        self._curve(panel, stretch * (_MICRO if fine else MILLI), 'drive end less slider', BLUE, 1.2)
+        self._curve(panel, stretch * (_MICRO if fine else style.MILLI), 'drive end less slider', style.BLUE, 1.2)
         panel.set_ylabel(f'stretch / {"µm" if fine else "mm"}')
         _no_closer(panel, _CLOSEST)
 
     def error(self, panel: Axes) -> None:
         """Draw the error of the position: the setpoint less the slider."""
         wanted = np.interp(self._motion['time'], self._run.setpoint['time'], self._run.setpoint['position'])
-        self._curve(panel, (wanted - self._motion['position']) * _MICRO, 'setpoint less slider', RED, 1.2)
+        self._curve(panel, (wanted - self._motion['position']) * _MICRO, 'setpoint less slider', style.RED, 1.2)
         panel.set_ylabel('error / µm')
         _no_closer(panel, _CLOSEST)
 
     def velocity(self, panel: Axes) -> None:
         """Draw the velocities of slider and drive, and the commands."""
-        self._curve(panel, self._motion['velocity'] * MILLI, 'slider', BLUE, 1.3)
+        self._curve(panel, self._motion['velocity'] * style.MILLI, 'slider', style.BLUE, 1.3)
         commands = _held(self._run.commands, self._window)
         if len(commands['time']):
-            panel.plot(commands['time'], commands['velocity'] * MILLI, color=ORANGE, linewidth=2.0, label='command',
-                       drawstyle='steps-post', alpha=0.8)
-        line(panel, self._inputs, 'drive_velocity', MILLI, 'drive', color=GREY, linewidth=1.0, linestyle=_DASHES)
+            panel.plot(commands['time'], commands['velocity'] * style.MILLI, color=style.ORANGE, linewidth=2.0,
+                       label='command', drawstyle='steps-post', alpha=0.8)
+        style.line(panel, self._inputs, 'drive_velocity', style.MILLI, 'drive', color=style.GREY, linewidth=1.0,
+                   linestyle=_DASHES)
         panel.set_ylabel('velocity / (mm/s)')
         _no_closer(panel, _CLOSEST)
 
     def forces(self, panel: Axes) -> None:
         """Draw the forces on the slider."""
         motion, inputs = self._motion, self._inputs
-        scale, unit = force_unit(motion['drive_force'], motion['friction_force'], inputs['external_force'])
+        scale, unit = style.force_unit(motion['drive_force'], motion['friction_force'], inputs['external_force'])
         if np.any(self._run.inputs['external_force'] != 0.0):
-            line(panel, inputs, 'external_force', scale, 'external', color=GREEN, linewidth=1.1)
-        self._curve(panel, motion['friction_force'] * scale, 'friction', RED, 2.0)
-        self._curve(panel, motion['drive_force'] * scale, 'drive', BLACK, 1.0)
+            style.line(panel, inputs, 'external_force', scale, 'external', color=style.GREEN, linewidth=1.1)
+        self._curve(panel, motion['friction_force'] * scale, 'friction', style.RED, 2.0)
+        self._curve(panel, motion['drive_force'] * scale, 'drive', style.BLACK, 1.0)
         times, forces = self._run.break_aways
         first, last = np.searchsorted(times, self._window)
         if last > first and not self.is_crowded:
             panel.plot(times[first:last], forces[first:last] * scale, 'o', markerfacecolor='white',
-                       markersize=4.5 if last - first < _MANY else 2.5, markeredgecolor=RED,
+                       markersize=4.5 if last - first < _MANY else 2.5, markeredgecolor=style.RED,
                        label='static limit at break-away')
         panel.set_ylabel(f'force / {unit}')
         _no_closer(panel, _CLOSEST)
 
     def normal_force(self, panel: Axes) -> None:
         """Draw the normal force on the slideway."""
-        scale, unit = force_unit(self._run.inputs['normal_force'])
-        line(panel, self._inputs, 'normal_force', scale, '', color=PURPLE, linewidth=1.3)
+        scale, unit = style.force_unit(self._run.inputs['normal_force'])
+        style.line(panel, self._inputs, 'normal_force', scale, '', color=style.PURPLE, linewidth=1.3)
         panel.set_ylabel(f'normal force / {unit}')
         _no_closer(panel, _CLOSEST)
 
@@ -209,7 +195,7 @@ class WindowPanels:
         lanes = self._colours
         for lane, (mode, colour) in enumerate(lanes.items()):
             bars = [(begin, end - begin) for begin, end, which in zip(starts[first:last].tolist(), ends.tolist(),
-                                                                     modes[first:last].tolist()) if which == mode]
+                                                                      modes[first:last].tolist()) if which == mode]
             panel.broken_barh(bars, (lane - 0.4, 0.8), facecolors=colour, edgecolors=colour, linewidth=0.3, snap=False)
         _lanes(panel, [mode.name for mode in lanes])
 
@@ -217,7 +203,7 @@ class WindowPanels:
         """Draw one lane for each kind of fault and refusal."""
         lanes = {label: list(marks) for label, marks in groupby(sorted(self._run.marks, key=_label), _label)}
         for lane, (label, marks) in enumerate(lanes.items()):
-            colour = GREY if marks[0].is_of_host else _MARK_COLOURS.get(label, RED)
+            colour = style.GREY if marks[0].is_of_host else _MARK_COLOURS.get(label, style.RED)
             spans = [(mark.begin, mark.end - mark.begin) for mark in marks if mark.is_span]
             panel.broken_barh(spans, (lane - 0.35, 0.7), facecolors=colour, edgecolors=colour, linewidth=0.5, alpha=0.7)
             instants = [mark.begin for mark in marks if not mark.is_span]
@@ -228,7 +214,7 @@ class WindowPanels:
     def _colours(self) -> dict[Mode, str]:
         """The lanes of the modes and their colours; YIELDING has one in a run that yields."""
         yields = Mode.YIELDING in self._run.modes[1]
-        return {mode: colour for mode, colour in MODE_COLOURS.items() if yields or mode != Mode.YIELDING}
+        return {mode: colour for mode, colour in style.MODE_COLOURS.items() if yields or mode != Mode.YIELDING}
 
     def _mode_shares(self, panel: Axes) -> None:
         edges = self._edges
@@ -244,7 +230,7 @@ class WindowPanels:
         if np.isnan(values).all():   # not measured
             return
         if not self.is_crowded and not self._is_dense(time, values):
-            line(panel, {'time': time, 'values': values}, 'values', 1.0, label, color=colour, linewidth=width)
+            style.line(panel, {'time': time, 'values': values}, 'values', 1.0, label, color=colour, linewidth=width)
             return
         middles, low, high = band(time, values, self._edges)
         panel.fill_between(middles, low, high, facecolor=colour, edgecolor=colour, linewidth=0.5, alpha=0.45,
@@ -252,7 +238,7 @@ class WindowPanels:
 
     def _is_dense(self, time: Numbers, values: Numbers) -> bool:
         """Return whether a curve goes up and down, by all of its range, more often than its pixels show."""
-        _, shown = thinned(time, values)
+        _, shown = style.thinned(time, values)
         return bool(np.nansum(np.abs(np.diff(shown))) > 2.0 * self._width / _OF_A_CYCLE * np.ptp(shown))
 
 
@@ -363,10 +349,10 @@ def plot_run(run: DrawnRun, windows: Sequence[TimeWindow], *paths: Path | str) -
         _dress_column(column, run, window, windows[k + 1:], len(lines))
         for one in column:
             one.yaxis.set_label_coords(-_LABEL / panel, 0.5)
-    head(grid[0, 0], run.title)
+    style.head(grid[0, 0], run.title)
     for one, window in zip(grid[0, 1:], windows[1:]):
-        one.set_title(f'{window.begin:.6g} to {window.end:.6g} s', loc='left', fontsize=10, color=GREY)
-    save(figure, *paths)
+        one.set_title(f'{window.begin:.6g} to {window.end:.6g} s', loc='left', fontsize=10, color=style.GREY)
+    style.save(figure, *paths)
 
 
 def _panels_of_lines(run: DrawnRun) -> list[tuple[float, _Draw]]:
@@ -384,7 +370,7 @@ def _panels_of_lines(run: DrawnRun) -> list[tuple[float, _Draw]]:
 def _draw_column(panels: Sequence[Axes], view: WindowPanels, lines: Sequence[_Draw]) -> None:
     for panel, draw_panel in zip(panels, (*lines, WindowPanels.modes, WindowPanels.marks)):
         draw_panel(view, panel)
-        dress(panel)
+        style.dress(panel)
 
 
 def _dress_column(panels: Sequence[Axes], run: DrawnRun, window: TimeWindow, parts: Sequence[TimeWindow], lines: int
@@ -392,11 +378,11 @@ def _dress_column(panels: Sequence[Axes], run: DrawnRun, window: TimeWindow, par
     """Mark in the panels of a window, first those of `lines`, its `parts` that are shown beside it, and faults."""
     for panel in panels:
         for part in parts:
-            panel.axvspan(*part, color=GREY, alpha=0.15, linewidth=1.0, zorder=0.5)
+            panel.axvspan(*part, color=style.GREY, alpha=0.15, linewidth=1.0, zorder=0.5)
     for panel in panels[:lines]:
         for mark in run.marks:
             if mark.is_span and not mark.is_of_host:
-                panel.axvspan(mark.begin, mark.end, color=RED, alpha=0.08, linewidth=0.0, zorder=0.4)
+                panel.axvspan(mark.begin, mark.end, color=style.RED, alpha=0.08, linewidth=0.0, zorder=0.4)
     for panel in panels[lines:]:
         panel.grid(visible=False, axis='y')
     panels[-1].set_xlabel('time / s')

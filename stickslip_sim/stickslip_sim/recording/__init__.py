@@ -6,9 +6,8 @@ from ..bags.bag import BagWriter, Split
 from ..bags.bag_files import RecordedMessage
 from ..bags.schemas import MessageCodec, Schema, flat_layout, schema
 from ..bags.topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded_topics
-from .measured_run import MeasuredRun, write_measured
+from .measured_run import MeasuredRun, read_run, write_measured
 from .offline_bag import OfflineBag, samples_of, write_bag
-from .opening import read_run
 from .reader import Bag, open_bag
 from .recorded_run import RecordedRun
 from .recordings import RecorderThread

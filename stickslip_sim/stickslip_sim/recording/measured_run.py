@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run that was measured: its modes, events and cycles are derived from the speed, and nothing is known of a scene."""
 
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -16,7 +17,7 @@ from ..bags.message_layout import MessageRows
 from ..bags.schemas import flat_layout
 from ..bags.topics import EXTERNAL_FORCE, FRICTION_FORCE, SLIDER_STATE
 from ..core.arrays import Columns, Numbers
-from ..core.errors import InputError, RecordingError
+from ..core.errors import InputError, RecordingError, RecordingWarning
 from ..core.types import Event, Mode
 from ..core.version import __version__
 from ..figures.slips import SLIP_TIMES, events_of_slips, slips_of
@@ -221,3 +222,19 @@ class MeasuredRun(RecordedRun):
 
     def _lack(self, what: str) -> NoReturn:
         raise RecordingError(f'{self.bag.path}: a measured run without {what}; it has {", ".join(self.measured)}')
+
+
+# Reads any run folder: of a simulation, or of a measurement.
+
+def read_run(path: Path | str) -> RecordedRun:
+    """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
+
+    A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
+    goes, with a RecordingWarning; its `notes` say so too.  One that was measured is a MeasuredRun.
+    """
+    bag = Bag(path)
+    is_measured = bag.metadata.get(METADATA, {}).get('origin') == MEASURED
+    run = MeasuredRun(bag, path) if is_measured else RecordedRun(bag, path)
+    for note in bag.shortfalls:
+        warnings.warn(note, RecordingWarning, stacklevel=2)
+    return run

@@ -6,8 +6,8 @@ import json
 import math
 import os
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bags import bag_files
 from ..bags.bag import METADATA, NEXT_FILE, is_by_wall_clock
-from ..bags.bag_files import Block, RecordedFile, RecordedMessage, TopicColumns, column_blocks, files_of, goes_on_empty
+from ..bags.bag_files import column_blocks
 from ..bags.mcap_file import Messages
 from ..bags.message_layout import Layout, layout_of
 from ..bags.schemas import Typestore, store_of, understood
@@ -54,12 +55,12 @@ class Bag:
     """
 
     def __init__(self, path: Path | str) -> None:
-        self.files = files_of(Path(path))
+        self.files = bag_files.files_of(Path(path))
         self.path = self.files[0] if len(self.files) == 1 else Path(path)
-        self._parts = [RecordedFile(file, whose_bytes_are_checked=True) for file in self.files]
+        self._parts = [bag_files.RecordedFile(file, whose_bytes_are_checked=True) for file in self.files]
         next_file = self._parts[-1].next_file
         self.is_complete = all(part.is_complete for part in self._parts) and not next_file
-        self.next_file = '' if goes_on_empty(self.files[-1]) or not self._parts[-1].is_complete else next_file
+        self.next_file = '' if bag_files.goes_on_empty(self.files[-1]) or not self._parts[-1].is_complete else next_file
         self.attachments: dict[str, bytes] = {}
         self.metadata: dict[str, dict[str, str]] = {}
         self.schemas: dict[str, str] = {}
@@ -71,7 +72,7 @@ class Bag:
             self._take(part)
         self._stores: dict[str, Typestore] = {}
 
-    def _take(self, part: RecordedFile) -> None:
+    def _take(self, part: bag_files.RecordedFile) -> None:
         self.attachments |= part.attachments
         for record in part.metadata:
             if record.name != NEXT_FILE and not (record.name == METADATA and METADATA in self.metadata):
@@ -142,7 +143,7 @@ class Bag:
         except (ValueError, TypeError, RecursionError) as error:
             raise RecordingError(f'{self.path}: damaged: its {attachment} is no JSON object: {error}') from None
 
-    def messages(self, topics: Iterable[str] | None = None) -> Iterator[RecordedMessage]:
+    def messages(self, topics: Iterable[str] | None = None) -> Iterator[bag_files.RecordedMessage]:
         """Yield the messages of some topics (None: all), with simulation time as their log time."""
         wanted = set(self.topics if topics is None else topics)
         return (message.at(self._is_by_wall_clock) for part in self._parts for message in part.written(wanted))
@@ -151,7 +152,7 @@ class Bag:
         """Yield all messages as they stand in the chunks of the files."""
         return (block for part in self._parts for block in part.blocks())
 
-    def decode(self, message: RecordedMessage) -> Any:
+    def decode(self, message: bag_files.RecordedMessage) -> Any:
         """Return the message as an object with its fields as attributes; raises RecordingError when it is damaged."""
         store = self._store(message.type)
         with self._named(f'{message.topic} at {message.log_time} ns'), understood(f'a {message.type}'):
@@ -171,7 +172,7 @@ class Bag:
         """Yield the columns of a topic block by block, the first of them empty, as far as it goes."""
         return (block for _, block in self._blocks({self.resolved(topic): None}))
 
-    def blocks_of(self, fields: Mapping[Topic, Sequence[str]]) -> Iterator[tuple[Topic, Block]]:
+    def blocks_of(self, fields: Mapping[Topic, Sequence[str]]) -> Iterator[tuple[Topic, bag_files.Block]]:
         """Yield fields of the one topic of each type block by block, the first of each empty, in one pass.
 
         Raises RecordingError when topics or fields are not there.
@@ -229,12 +230,12 @@ class Bag:
         found = f'{len(names)} topics' if names else 'no topic'
         raise RecordingError(f'{self.path}: {found} {topic}; there are {", ".join(self.topics) or "none"}')
 
-    def _blocks(self, wanted: Mapping[str, Sequence[str] | None]) -> Iterator[tuple[str, Block]]:
+    def _blocks(self, wanted: Mapping[str, Sequence[str] | None]) -> Iterator[tuple[str, bag_files.Block]]:
         """Yield fields of topics (None: all) block by block, the first of each empty, in one pass."""
         topics = []
         for name, fields in wanted.items():
             type_name = self.topics[name]
-            topic = TopicColumns(name, type_name, self._store(type_name), self.decode, self._is_by_wall_clock)
+            topic = bag_files.TopicColumns(name, type_name, self._store(type_name), self.decode, self._is_by_wall_clock)
             if missing := [field for field in fields or () if field not in topic.fields]:
                 raise RecordingError(f'{self.path}: {name} has no {", ".join(missing)}; recorded by another version?')
             topic.fields = topic.fields if fields is None else [*fields]
@@ -243,7 +244,7 @@ class Bag:
         with self._named(', '.join(wanted)), understood('a time beyond the year 2262', OverflowError):
             yield from ((topic.topic, block) for topic, block in column_blocks(self._parts, topics))
 
-    def _held(self, wanted: Mapping[str, Sequence[str] | None]) -> dict[str, Block]:
+    def _held(self, wanted: Mapping[str, Sequence[str] | None]) -> dict[str, bag_files.Block]:
         """Return fields of topics (None: all), each as one array; raises RecordingError on more than fits."""
         blocks = self._blocks(wanted)
         held = {name: self._room(name, first) for name, first in islice(blocks, len(wanted))}
@@ -257,7 +258,7 @@ class Bag:
         return {name: {field_name: column[:done[name]] for field_name, column in columns.items()}
                 for name, columns in held.items()}
 
-    def _room(self, topic: str, first: Block) -> Block:
+    def _room(self, topic: str, first: bag_files.Block) -> bag_files.Block:
         """Return columns for all messages of a topic; raises RecordingError on more than fits."""
         count = self.counts[topic]
         if (size := count * sum(column.itemsize for column in first.values())) > MOST_TOPIC_BYTES:
@@ -287,3 +288,63 @@ def _event(time: float, kind: int, mode: int, direction: int, position: float, v
     second = math.floor(time)
     return Event(float(second), time - second, EventKind(kind), Mode(mode), direction, position, velocity, math.nan,
                  *rest)
+
+
+# Recordings to be played: any MCAP bag of ROS 2, from any time on, without reading all that comes before.
+
+class Recording:
+    """A bag to be played: its topics, and the log times (ns) of its first and last message, `begin` and `end`.
+
+    One that was cut off (`is_complete` is false) is what is whole of it.  Raises RecordingError when the bag cannot be
+    read, or holds no message.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        files = bag_files.files_of(Path(path))
+        self.path = files[0] if len(files) == 1 else Path(path)
+        self._files = [bag_files.RecordedFile(file, whose_bytes_are_checked=False) for file in files]
+        self.is_complete = all(file.is_complete for file in self._files) and not bag_files.goes_on_empty(files[-1])
+        self.topics: dict[str, bag_files.RecordedTopic] = {}
+        for file in self._files:
+            self.topics = {**file.topics, **self.topics}
+        spans = [file.span for file in self._files if file.span is not None]
+        if not spans:
+            raise RecordingError(f'{self.path}: no message can be read of it; give a recording that holds some')
+        self.begin, self.end = min(begin for begin, _ in spans), max(end for _, end in spans)
+        for file in self._files:
+            file.begin = self.begin
+
+    @cached_property
+    def scene(self) -> Scene | None:
+        """The scene that travels in it; None without one that this version can read."""
+        with suppress(InputError, RecordingError):
+            if text := self._files[0].attachments.get(SCENE_FILE):
+                return parse_scene(text.decode(errors='replace'))
+        return None
+
+    def simulation_time(self, message: bag_files.RecordedMessage) -> int:
+        """Return the simulation time of a message of a recording of an axis, ns."""
+        return message.publish_time if self._is_by_wall_clock else message.log_time
+
+    def stamp(self, message: bag_files.RecordedMessage) -> int:
+        """Return when a message was stamped, ns."""
+        return message.log_time if self._is_by_wall_clock else message.publish_time
+
+    @cached_property
+    def _is_by_wall_clock(self) -> bool:
+        return any(is_by_wall_clock(record.metadata) for record in self._files[0].metadata if record.name == METADATA)
+
+    @property
+    def length(self) -> float:
+        """From the first message to the last, s; log times of other recorders are since 1970."""
+        return (self.end - self.begin) * 1e-9
+
+    def messages(self, topics: Collection[str], since: int, until: int) -> Iterator[bag_files.RecordedMessage]:
+        """Yield the messages of some topics from one log time to another (ns), both included, in this order.
+
+        A bag without an index, such as one that was cut off, has them in the order in which they were written.  Raises
+        RecordingError where the bag is damaged.
+        """
+        for file in self._files:
+            if file.span is not None and file.span[0] <= until and file.span[1] >= since:
+                yield from file.messages(topics, since, until)

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from ..core.errors import InputError
+from ..core.errors import InputError, RefusedError
 
 _MAX_DOMAIN = 232    # beyond, DDS has no UDP ports
 _VARIABLES = ('ROS_DOMAIN_ID', 'ROS_STATIC_PEERS', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_DISCOVERY_SERVER',
@@ -31,15 +31,23 @@ def check_environment() -> None:
     _check_security()
 
 
-def answer_of_node(service: str, request: Mapping[str, object], node: str, patience: float, duration: float) -> Any:
-    """Return the answer of a node, as `service_call.answer_of` does, in an environment and workspace that are right."""
+def answer_of_node(service: str, request: Mapping[str, object], node: str, patience: float, duration: float = 0.0
+                   ) -> Any:
+    """Return the answer of a node, as `service_call.answer_of` does, in an environment and workspace that are right.
+
+    Raises RefusedError when the node refuses.
+    """
     check_environment()
     try:
         from .service_call import answer_of
     except ImportError as error:
         raise InputError('AMENT_PREFIX_PATH', os.environ.get('AMENT_PREFIX_PATH', ''),
                          f'that of a workspace with {error.name}', 'source its setup.bash') from None
-    return answer_of(service, request, node, patience, duration)
+    answer = answer_of(service, request, node, patience, duration)
+    result = getattr(answer, 'result', None)    # of parameters that were set
+    if not (result.successful if result else answer.success):
+        raise RefusedError(result.reason if result else answer.message)
+    return answer
 
 
 def _check_security() -> None:

@@ -18,29 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..axis import Axis, Friction, InitialState, check_start, pack
-from ..axis.layout import (
-    BACKWARD_EXPONENT,
-    BACKWARD_INITIAL,
-    BACKWARD_LIMIT,
-    BACKWARD_SEGMENT,
-    BACKWARD_TAU,
-    COMPLIANT,
-    CONTACT_DAMPING,
-    CONTACT_STIFFNESS,
-    DAMPING,
-    MASS,
-    NORMAL,
-    SEGMENT_FIELDS,
-    SEGMENT_SIZE,
-    SIDED,
-    STATIC_EXPONENT,
-    STATIC_INITIAL,
-    STATIC_LIMIT,
-    STATIC_TAU,
-    STIFFNESS,
-    TABLE,
-)
+from ..axis import Axis, Friction, InitialState, check_start, layout, pack
 from ..core import ranges
 from ..core.arrays import Numbers
 from ..core.errors import InputError
@@ -142,8 +120,10 @@ def _smooth(table: KineticTable, given: _Values) -> KineticTable:
 
 
 _KINETIC, _BACKWARD = 'kinetic_', 'backward_'
-_STATIC = {'initial': (STATIC_INITIAL, BACKWARD_INITIAL), 'limit': (STATIC_LIMIT, BACKWARD_LIMIT),
-           'time_constant': (STATIC_TAU, BACKWARD_TAU), 'exponent': (STATIC_EXPONENT, BACKWARD_EXPONENT)}
+_STATIC = {'initial': (layout.STATIC_INITIAL, layout.BACKWARD_INITIAL),
+           'limit': (layout.STATIC_LIMIT, layout.BACKWARD_LIMIT),
+           'time_constant': (layout.STATIC_TAU, layout.BACKWARD_TAU),
+           'exponent': (layout.STATIC_EXPONENT, layout.BACKWARD_EXPONENT)}
 _OF_KINETIC = ('velocities', 'coefficients', 'end_slope', 'initial', 'limit', 'stribeck_velocity', 'exponent',
                'viscous')
 
@@ -156,12 +136,12 @@ class Column(NamedTuple):
 
 
 BATCH_COLUMNS: Mapping[str, Column] = {
-    'mass': Column('axis.mass', MASS),
-    'drive_stiffness': Column('axis.drive_stiffness', STIFFNESS),
-    'drive_damping': Column('axis.drive_damping', DAMPING),
-    'normal_force': Column('axis.normal_force', NORMAL),
-    'contact_stiffness': Column('contact.stiffness', CONTACT_STIFFNESS),
-    'contact_damping': Column('contact.damping', CONTACT_DAMPING),
+    'mass': Column('axis.mass', layout.MASS),
+    'drive_stiffness': Column('axis.drive_stiffness', layout.STIFFNESS),
+    'drive_damping': Column('axis.drive_damping', layout.DAMPING),
+    'normal_force': Column('axis.normal_force', layout.NORMAL),
+    'contact_stiffness': Column('contact.stiffness', layout.CONTACT_STIFFNESS),
+    'contact_damping': Column('contact.damping', layout.CONTACT_DAMPING),
     **{f'static_{name}': Column(f'friction.static.{name}', at) for name, (at, _) in _STATIC.items()},
     **{f'static_backward_{name}': Column(f'friction.static.backward.{name}', at) for name, (_, at) in _STATIC.items()},
     **{f'kinetic_{name}': Column(f'friction.kinetic.{name}') for name in _OF_KINETIC},
@@ -197,7 +177,7 @@ def parameter_rows(axis: Axis, count: int, given: Mapping[str, Numbers]) -> Numb
         if at is not None:
             rows[:, at] = values
     if any(name.startswith(f'static_{_BACKWARD}') for name in given):
-        rows[:, SIDED] = 1.0
+        rows[:, layout.SIDED] = 1.0
     _check_friction(rows)
     return rows
 
@@ -235,17 +215,18 @@ def _column(name: str, axis: Axis) -> Column:
     if name not in BATCH_COLUMNS:
         raise InputError(name, 'given', 'one of drive_velocity, external_force, ' + ', '.join(BATCH_COLUMNS),
                          'rename it, or leave it out')
-    if name.startswith('contact_') and not pack(axis)[COMPLIANT]:
+    if name.startswith('contact_') and not pack(axis)[layout.COMPLIANT]:
         raise InputError(name, 'given', 'left out with a rigid contact', 'give the axis a compliant contact')
     return BATCH_COLUMNS[name]
 
 
 def _check_friction(rows: Numbers) -> None:
     """Raise InputError where static friction is below kinetic friction at rest, or falls with the rest time."""
-    at_rest = TABLE + SEGMENT_FIELDS.index('friction')
-    backwards = (at_rest + SEGMENT_SIZE * rows[:, BACKWARD_SEGMENT]).astype(int)
-    _check_side(rows, (STATIC_INITIAL, STATIC_LIMIT), rows[:, at_rest], '')
-    _check_side(rows, (BACKWARD_INITIAL, BACKWARD_LIMIT), rows[np.arange(len(rows)), backwards], _BACKWARD)
+    at_rest = layout.TABLE + layout.SEGMENT_FIELDS.index('friction')
+    backwards = (at_rest + layout.SEGMENT_SIZE * rows[:, layout.BACKWARD_SEGMENT]).astype(int)
+    _check_side(rows, (layout.STATIC_INITIAL, layout.STATIC_LIMIT), rows[:, at_rest], '')
+    _check_side(rows, (layout.BACKWARD_INITIAL, layout.BACKWARD_LIMIT), rows[np.arange(len(rows)), backwards],
+                _BACKWARD)
 
 
 def _check_side(rows: Numbers, places: Iterable[int], at_rest: Numbers, side: str) -> None:

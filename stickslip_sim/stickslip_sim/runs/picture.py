@@ -14,7 +14,7 @@ from ..core.arrays import Columns, Numbers
 from ..core.errors import InputError
 from ..core.time_grid import Instants
 from ..core.types import Event, EventKind, Sample
-from ..figures.wording import headline
+from ..figures.cycles import headline
 from ..plots import plot_run
 from ..plots.overlay import Bound, plot_over_each_other
 from ..plots.run import DrawnRun, TimeWindow, drawn_run

@@ -9,8 +9,7 @@ from typing import NamedTuple
 from ..core.errors import InputError
 from ..core.types import EventKind
 from ..figures.catalogue import OF_A_CYCLE, head_of, unit_of
-from ..figures.cycles import Summary
-from ..figures.wording import miss_note, touch_note
+from ..figures.cycles import Summary, miss_note, touch_note
 from ..report.model import Part, Table, facts
 from ..report.quantity import counted, quantity
 from ..scene.values import file_name

@@ -16,8 +16,7 @@ from ..core.arrays import Columns
 from ..core.errors import InputError
 from ..core.time_grid import decimal, instant_of, instants, multiples
 from ..core.types import EnergyBalance, Event, Instant, Mode, Progress, Sample
-from ..figures.cycles import Summary, summary
-from ..figures.wording import miss_note, touch_note
+from ..figures.cycles import Summary, miss_note, summary, touch_note
 from ..report.values import plain, versions
 from ..scene import Scene
 from ..simulation import Rig

@@ -24,24 +24,12 @@ from ..core.types import Progress
 from ..figures.point_figures import Motion, figures_of_runs
 from ..friction import KineticTable, StaticLaw, StaticLawKind
 from ..scene import Scene
-from .answer_changes import (
-    ALL_OVER,
-    FAILED,
-    NO,
-    NOWHERE,
-    OPEN,
-    YES,
-    Answers,
-    Findings,
-    Places,
-    find_transitions,
-    highest_changes,
-)
+from . import answer_changes
 from .points import Values, batches, runs_in_batches, scene_at, sliding_slope, works_in_batches
 from .sample import Saltelli
 from .study import Study
 from .sweep import Workers
-from .uncertainty import PERCENTS, Index, sobol_indices
+from .uncertainty import Index, percentiles, sobol_indices
 from .variation import Variation, checked, number_at, parameter_of
 
 # Critical feeds in closed form: from which feed on a slider no longer sticks, where the theory says it.
@@ -213,8 +201,8 @@ class Critical:
 
     over: Variation
     accuracy: float
-    from_rest: Findings
-    from_sliding: Findings
+    from_rest: answer_changes.Findings
+    from_sliding: answer_changes.Findings
     by_table: tuple[TableFact, ...] = ()
 
     @property
@@ -222,8 +210,8 @@ class Critical:
         """Stretches in which stick-slip goes on from rest, and sliding from sliding."""
         marks = (*self.from_rest.marks, *self.from_sliding.marks)
         ends = sorted({self.over.low, *marks, self.over.high})
-        return _joined([(a, b) for a, b in pairwise(ends) if self.from_rest.at(0.5 * (a + b)) == YES
-                        and self.from_sliding.at(0.5 * (a + b)) == NO])
+        return _joined([(a, b) for a, b in pairwise(ends) if self.from_rest.at(0.5 * (a + b)) == answer_changes.YES
+                        and self.from_sliding.at(0.5 * (a + b)) == answer_changes.NO])
 
 
 def critical_of(scene: Scene, over: Variation, accuracy: float, progress: Progress = None) -> Critical:
@@ -238,8 +226,8 @@ def critical_of(scene: Scene, over: Variation, accuracy: float, progress: Progre
         scene_at(scene.values, [over.name], np.array([end]))
     ask = _Questions(scene.values, over.name)
     limits = over.low, over.high, over.log, accuracy
-    rest = find_transitions(ask.sticks, *limits, progress)    # it takes nearly all the time
-    sliding = find_transitions(ask.loses_sliding, *limits)
+    rest = answer_changes.find_transitions(ask.sticks, *limits, progress)    # it takes nearly all the time
+    sliding = answer_changes.find_transitions(ask.loses_sliding, *limits)
     facts = [table_fact(scene.values, over.name, one.value, accuracy, found is sliding)
              for found in (rest, sliding) for one in found.transitions if one.resolved]
     return Critical(over, accuracy, rest, sliding, tuple(fact for fact in facts if fact is not None))
@@ -264,31 +252,32 @@ class _Questions:
     values: Mapping[str, object]
     name: str
 
-    def sticks(self, numbers: Numbers) -> Answers:
+    def sticks(self, numbers: Numbers) -> answer_changes.Answers:
         """Whether stick-slip goes on, from the start of the scene."""
         return stick_answers(self.values, [self.name], numbers[:, None])
 
-    def loses_sliding(self, numbers: Numbers) -> Answers:
+    def loses_sliding(self, numbers: Numbers) -> answer_changes.Answers:
         """Whether a disturbance of steady sliding grows."""
         return lost_answers(self.values, [self.name], numbers[:, None])
 
 
-def stick_answers(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> Answers:
+def stick_answers(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> answer_changes.Answers:
     """Return for each point whether stick-slip goes on, from the start of the scene."""
     runs = runs_in_batches(values, names, points, None, _PATIENCE, _DOUBLINGS)
     figures = figures_of_runs(runs)
-    answers = np.where(figures.motion == Motion.STICK_SLIP, YES, NO)
-    answers[(figures.motion == Motion.UNDECIDED) | runs.late] = OPEN   # late: a value beside it may never slide
-    answers[figures.motion == Motion.FAILED] = FAILED
+    answers = np.where(figures.motion == Motion.STICK_SLIP, answer_changes.YES, answer_changes.NO)
+    answers[(figures.motion == Motion.UNDECIDED) | runs.late] = answer_changes.OPEN   # late: another may never slide
+    answers[figures.motion == Motion.FAILED] = answer_changes.FAILED
     return answers
 
 
-def lost_answers(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> Answers:
+def lost_answers(values: Mapping[str, object], names: Sequence[str], points: Numbers) -> answer_changes.Answers:
     """Return for each point whether a disturbance of steady sliding grows."""
     slopes = np.empty(len(points))
     for members, scene, inputs in batches(values, names, points):
         slopes[members] = sliding_slope(scene.axis, inputs)
-    return np.where(np.isnan(slopes), OPEN, np.where(slopes < 0.0, YES, NO))
+    return np.where(np.isnan(slopes), answer_changes.OPEN, np.where(
+        slopes < 0.0, answer_changes.YES, answer_changes.NO))
 
 
 def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -335,13 +324,13 @@ class CriticalStudy:
         points = self.study.points(first, last)
         names = (*self.study.names, self.over.name)
 
-        def sticks(rows: Places, numbers: Numbers) -> Answers:
+        def sticks(rows: answer_changes.Places, numbers: Numbers) -> answer_changes.Answers:
             return stick_answers(self.study.values, names, np.column_stack([points[rows], numbers]))
 
-        def loses_sliding(rows: Places, numbers: Numbers) -> Answers:
+        def loses_sliding(rows: answer_changes.Places, numbers: Numbers) -> answer_changes.Answers:
             return lost_answers(self.study.values, names, np.column_stack([points[rows], numbers]))
 
-        return np.column_stack([highest_changes(question, last - first, self.over, ACCURACY)
+        return np.column_stack([answer_changes.highest_changes(question, last - first, self.over, ACCURACY)
                                 for question in (sticks, loses_sliding)])
 
 
@@ -392,6 +381,6 @@ def _spread(sample: Saltelli, values: Numbers) -> CriticalSpread:
     indices = None if sample.correlations else sobol_indices(np.where(np.isfinite(values), values, np.nan))
     names = [one.name for one in sample.variations]
     return CriticalSpread(
-        drawn.size, int((drawn == ALL_OVER).sum()), int((drawn == NOWHERE).sum()), int(np.isnan(drawn).sum()), known,
-        np.percentile(known, PERCENTS).tolist() if len(known) else None,
+        drawn.size, int((drawn == answer_changes.ALL_OVER).sum()), int((drawn == answer_changes.NOWHERE).sum()),
+        int(np.isnan(drawn).sum()), known, percentiles(known),
         dict(zip(names, indices, strict=True)) if indices else None)

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..core.arrays import Numbers, data_frame
 from ..core.types import Progress
 from ..inputs import SceneOrName, scene_of
 from .critical import Critical, critical_of, default_range
 from .sample import EvenGrid, Saltelli, Sobol
 from .study import Study
-from .sweep import rows_by
-from .table import columns, stretches, words
+from .sweep import columns_of
+from .table import words
 from .uncertainty import Uncertainty, load_uncertain, uncertain_of, uncertainty_of
 from .variation import range_of, variation
 
@@ -48,7 +46,7 @@ def sweep(scene: SceneOrName, *over: str, sobol: int | None = None, duration: fl
     scene = scene_of(scene)
     variations = tuple(variation(text, drawn=sobol is not None) for text in over)
     sample = EvenGrid(variations) if sobol is None else Sobol(variations, sobol, scene.seed)
-    return SweptPoints(_columns(Study(scene.values, sample, duration), progress))
+    return SweptPoints(columns_of(Study(scene.values, sample, duration), progress=progress))
 
 
 def critical(scene: SceneOrName, name: str, between: tuple[float, float] | None = None, accuracy: float = 1e-9,
@@ -77,14 +75,4 @@ def uncertainty(scene: SceneOrName, known: str | Path | Mapping[str, object], sa
     found = (uncertain_of({'parameters': known, 'seed': seed}) if isinstance(known, Mapping)
              else load_uncertain(known))
     sample = Saltelli(found.distributions, samples, found.seed, found.correlations)
-    return uncertainty_of(sample, _columns(Study(scene.values, sample, duration), progress))
-
-
-def _columns(study: Study, progress: Progress) -> dict[str, Numbers]:
-    """Run all points of a study; return its parameters and figures by name."""
-    parts = []
-    for (_, last), rows in zip(stretches(study), rows_by(study, stretches(study), None)):
-        parts.append(rows)
-        if progress:
-            progress(last / study.count)
-    return columns(study, np.concatenate(parts))
+    return uncertainty_of(sample, columns_of(Study(scene.values, sample, duration), progress=progress))

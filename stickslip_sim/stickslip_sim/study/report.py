@@ -136,7 +136,7 @@ def uncertainty_report(study: Study, sample: Saltelli, swept: Swept, found: Unce
     known = points if found.known == found.points else f'those {found.known} of {points} where it is known'
     doubts = ((found.failed, 'failed'), (found.undecided, 'undecided'), (found.unsettled, 'had not settled'))
     yield f'stick-slip in {share} of {known}' + ''.join(f', {count} {what}' for count, what in doubts if count)
-    yield _percentiles('of those', [(name, unit_of(name), values) for name, values in found.percentiles.items()])
+    yield percentiles_table('of those', [(name, unit_of(name), values) for name, values in found.percentiles.items()])
     yield from ('', *_indices(study, sample, found.indices), '')
 
 
@@ -147,10 +147,10 @@ def spread_report(critical: CriticalStudy, sample: Saltelli, spreads: Mapping[st
     yield (f'critical {over.name} from {over.low:g} to {over.high:g}{_unit(over.unit)}, the highest one, '
            f'to {ACCURACY:g} of the value')
     yield from (*_laws(study, sample), '')
-    title = f'critical {over.name}'
+    title: str | None = f'critical {over.name}'
     for start, one in spreads.items():
-        yield _percentiles(title, [(_words(start), over.unit, one.percentiles)])
-        title = ''
+        yield percentiles_table(title, [(_words(start), over.unit, one.percentiles)])
+        title = None
         does = 'sticks and slips' if start == 'from_rest' else 'loses sliding'
         others = [f'{count} {what}' for count, what in (
             (one.all_over, f'where it {does} all over the range'), (one.nowhere, f'where it nowhere {does}'),
@@ -211,9 +211,9 @@ def _laws(study: Study, sample: Saltelli) -> Iterator[str]:
         yield '  correlated: ' + (f'most of all {first} with {second}, {number:+.3g}' if size else 'none')
 
 
-def _percentiles(title: str, rows: Sequence[tuple[str, str, Sequence[float] | None]]) -> Table:
-    """Return the percentiles of quantities with their units, below a title unless it is empty."""
-    heads = (title, *(f'{percent} %' for percent in PERCENTS)) if title else ()
+def percentiles_table(title: str | None, rows: Sequence[tuple[str, str, Sequence[float] | None]]) -> Table:
+    """Return the percentiles of quantities with their units, below a title unless that is None."""
+    heads = () if title is None else (title, *(f'{percent} %' for percent in PERCENTS))
     return Table(heads, [(name, *(quantities(values, unit, 4) if values else ['none'])) for name, unit, values in rows],
                  least=(_LABEL, *[_CELL] * len(PERCENTS)))
 

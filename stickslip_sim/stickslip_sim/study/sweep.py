@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """All points of a study, chunk by chunk and in their order, by one process, several, or a cluster."""
 
+import logging
 import os
 import pickle
 import select
@@ -11,9 +12,11 @@ import sys
 import threading
 import traceback
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
-from contextlib import AbstractContextManager, contextmanager, suppress
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
+from functools import partial
+from importlib.util import find_spec
 from itertools import islice
 from multiprocessing.connection import Connection, Pipe
 from queue import SimpleQueue
@@ -22,10 +25,11 @@ from typing import Any, NamedTuple, NoReturn
 import numpy as np
 
 from ..core.arrays import Numbers
-from ..core.errors import StickslipError
+from ..core.errors import InputError, StickslipError
 from ..core.hot_path import hot_path
 from ..core.types import Progress
 from .folder import KEPT, Folder
+from .study import versions_of_a_study
 from .table import TableColumns, Tabled, columns, lines, read_columns, stretches
 
 # The workers on the chunks of a study beside this process: other processes of this machine.
@@ -193,14 +197,25 @@ def sweep_into(study: Tabled, folder: Folder, workers: Workers | None = None, pr
     with folder.taken():
         chunks = folder.whole_chunks(study)
         done = len(chunks)
-        for (_, last), rows in zip(stretches(study, done), rows_by(study, stretches(study, done), workers)):
+        for rows in _told(study, done, workers, progress):
             folder.append(lines(study, rows))
             chunks.append(rows)
-            if progress:
-                progress(last / study.count)
         table = columns(study, np.concatenate(chunks))
         folder.finish(study, table)
     return Swept(table, max(study.count - done * study.chunk, 0))
+
+
+def columns_of(study: Tabled, workers: Workers | None = None, progress: Progress = None) -> TableColumns:
+    """Run all points of a study, without a folder; return its numbers and figures by name."""
+    return columns(study, np.concatenate(list(_told(study, 0, workers, progress))))
+
+
+def _told(study: Tabled, done: int, workers: Workers | None, progress: Progress) -> Iterator[Numbers]:
+    """Yield the rows of the chunks after those that are done, and tell how far that is once they are taken."""
+    for (_, last), rows in zip(stretches(study, done), rows_by(study, stretches(study, done), workers)):
+        yield rows
+        if progress:
+            progress(last / study.count)
 
 
 def rows_by(study: Tabled, wanted: Iterator[_Stretch], workers: Workers | None) -> Iterator[Numbers]:
@@ -221,3 +236,94 @@ def _by_workers(study: Tabled, wanted: Iterator[_Stretch], workers: Workers) -> 
 
 def _submitted(study: Tabled, wanted: Iterable[_Stretch], workers: Workers) -> list[Future[Numbers]]:
     return [workers.pool.submit(workers.work, study, *stretch) for stretch in wanted]
+
+
+# The workers of a Dask scheduler, on as many machines as it has; the only door to `distributed` (the extra `cluster`).
+#
+# A worker that dies is the scheduler's to notice: it gives its chunks to another one.
+
+_PATIENCE = 5.0   # s for the scheduler to answer
+
+
+@contextmanager
+def cluster(address: str) -> Iterator[Workers]:
+    """Yield the workers of the scheduler at an address; raises InputError when there are none, and WorkerError."""
+    with _quietly(), closing(_client(address)) as client, _reported(address):
+        _check_workers(client, address)
+        yield Workers(client.get_executor(), sum(client.nthreads().values()),
+                   partial(_checked_rows, versions_of_a_study()))
+
+
+@contextmanager
+def _reported(address: str) -> Iterator[None]:
+    """Turn an error of the cluster into a WorkerError."""
+    from distributed import KilledWorker
+    from distributed.comm import CommClosedError
+
+    try:
+        yield
+    except KilledWorker:
+        raise WorkerError(f'one worker of {address} after the other died; {KEPT}') from None
+    except (CommClosedError, CancelledError):
+        raise WorkerError(f'the scheduler {address} is gone; {KEPT}') from None
+
+
+@contextmanager
+def _quietly() -> Iterator[None]:
+    """Keep Dask from logging: its errors are raised."""
+    logging.disable(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logging.disable(logging.NOTSET)
+
+
+def _client(address: str) -> Any:
+    if find_spec('distributed') is None:
+        raise InputError('--scheduler', address, "left out: Dask's distributed is not installed here",
+                         'pip install distributed, or use --workers')
+    import asyncio
+
+    from distributed import Client
+
+    try:
+        asyncio.run(asyncio.wait_for(_greet(address), _PATIENCE))
+        return Client(address, timeout=_PATIENCE, set_as_default=False)
+    except (OSError, ValueError, TypeError, MemoryError, asyncio.TimeoutError) as error:
+        # MemoryError from a server that speaks another protocol; the time-out is an OSError from Python 3.11 on only
+        raise InputError('--scheduler', address, 'the address of a Dask scheduler that runs, as tcp://HOST:8786',
+                         f'{str(error) or "there is no answer"}; start one: dask scheduler') from None
+
+
+async def _greet(address: str) -> None:
+    """Return when a scheduler has answered: a client would wait for ever for a silent server."""
+    from distributed.comm import connect
+
+    comm = await connect(address, timeout=_PATIENCE)
+    await comm.close()
+
+
+def _check_workers(client: Any, address: str) -> None:
+    """Raise InputError unless there are workers, all with this very stickslip."""
+    found = client.run(versions_of_a_study, on_error='return')
+    if not found:
+        raise InputError('--scheduler', address, 'a scheduler with workers', f'start one: dask worker {address}')
+    for worker, versions in found.items():
+        other = str(versions) if isinstance(versions, BaseException) else _other(versions)
+        if other:
+            raise InputError('--scheduler', address, 'one whose workers all have what is installed here',
+                             f'{worker}: {other}; install the same there')
+
+
+def _other(versions: Mapping[str, str]) -> str:
+    """Return which of a worker's versions is another than here, in words; empty if none is."""
+    return ', '.join(f'{name} {versions[name]} and not {own}' for name, own in versions_of_a_study().items()
+                     if versions[name] != own)
+
+
+def _checked_rows(versions: Mapping[str, str], study: Tabled, first: int, last: int) -> Numbers:
+    """Return the rows of a stretch of points; raises WorkerError on a worker that came late with other versions."""
+    other = _other(versions)
+    if other:
+        raise WorkerError(f'a worker lacks the versions of this study, {other}: its last bits might differ; {KEPT}')
+    return study.rows(first, last)

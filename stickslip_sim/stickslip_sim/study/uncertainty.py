@@ -74,7 +74,7 @@ def uncertainty_of(sample: Saltelli, columns: Mapping[str, Numbers]) -> Uncertai
                for name, values in {'stick_slip': slips, **known}.items()}
     return Uncertainty(
         drawn.size, count, failed, undecided, int(unsettled.sum()), float(np.nansum(drawn)) / count if count else None,
-        {name: _percentiles(values) for name, values in spread_of(sample, columns).items()},
+        {name: percentiles(values) for name, values in spread_of(sample, columns).items()},
         {name: dict(zip(names, found, strict=True)) if found else None for name, found in indices.items()})
 
 
@@ -110,8 +110,15 @@ def _slips(sample: Saltelli, columns: Mapping[str, Numbers]) -> Numbers:
     return np.where(np.isin(motion, (Motion.FAILED, Motion.UNDECIDED)), np.nan, motion == Motion.STICK_SLIP)
 
 
-def _percentiles(values: Numbers) -> list[float] | None:
-    return [float(number) for number in np.percentile(values, PERCENTS)] if len(values) else None
+def percentiles(values: Numbers) -> list[float] | None:
+    """Return those of PERCENTS of the values that are known, which may be infinite; None of none."""
+    known = values[~np.isnan(values)]
+    if not len(known):
+        return None
+    with np.errstate(invalid='ignore'):
+        found = np.percentile(known, PERCENTS)
+    upper = np.percentile(known, PERCENTS, method='higher')   # no number lies between two infinite ones
+    return [float(number) for number in np.where(np.isnan(found), upper, found)]
 
 
 # The file of parameters that are not known exactly: read strictly, so that no misspelling passes unseen.

@@ -17,8 +17,7 @@ from rcl_interfaces.msg import Log
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
-from benchmarks.closed_loop import close_loop
-from benchmarks.controllers import controllers
+from benchmarks.controllers import close_loop, controllers
 from stickslip_msgs.srv import InjectFault, Step
 from stickslip_sim.controllers import Moves
 from stickslip_sim.core.errors import InputError

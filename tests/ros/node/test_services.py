@@ -11,8 +11,8 @@ import pytest
 
 from stickslip_msgs.srv import InjectFault, Step
 from stickslip_sim.check.limits import limits_of, outcomes_of
+from stickslip_sim.check.remake import other_run, other_scene
 from stickslip_sim.check.verification import verify
-from stickslip_sim.check.what_if import other_run, other_scene
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag, read_run

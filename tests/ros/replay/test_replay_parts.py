@@ -19,7 +19,7 @@ from stickslip_msgs.msg import RigEvent
 from stickslip_sim.bags.topics import PARAMETER_EVENTS, RECORDED, RIG_EVENT
 from stickslip_sim.core.errors import RecordingError
 from stickslip_sim.recording import QosProfile, Topic, write_bag
-from stickslip_sim.recording.playback import Recording
+from stickslip_sim.recording.reader import Recording
 from stickslip_sim.ros.replay.orders import Request, is_timeout, request_of
 from stickslip_sim.ros.replay.player import Act, Player, Timeline
 from stickslip_sim.simulation import RigEventKind

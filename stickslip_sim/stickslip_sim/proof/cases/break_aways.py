@@ -17,21 +17,7 @@ from ...core.types import Event, EventKind
 from ...friction import KineticTable, StaticLaw, StaticLawKind
 from ...friction.kinetic import default_excess
 from ...solvers import Solver
-from ..axes import (
-    CONTACTS,
-    GRAZING_FREQUENCIES,
-    PHASES,
-    RIGID,
-    Contact,
-    grazing_drive,
-    instant,
-    make,
-    of_kind,
-    paper_axis,
-    random_axis,
-    run_events,
-    with_static,
-)
+from .. import axes
 from ..closed_form import (
     CLOSED_FORM_DIGITS,
     Jump,
@@ -57,11 +43,11 @@ def grazing(setup: Setup) -> Measurement:
 
 def _grazes(solver: Solver, seed: int, overshoot: float) -> None:
     rng = random.Random(seed)
-    axis = paper_axis(rng.choice(CONTACTS))
-    phase, frequency = rng.uniform(*PHASES), rng.uniform(*GRAZING_FREQUENCIES)
-    drive = grazing_drive(axis, overshoot, frequency, phase)
+    axis = axes.paper_axis(rng.choice(axes.CONTACTS))
+    phase, frequency = rng.uniform(*axes.PHASES), rng.uniform(*axes.GRAZING_FREQUENCIES)
+    drive = axes.grazing_drive(axis, overshoot, frequency, phase)
     period = 1.0 / frequency
-    events = make(axis, drive, solver=solver).advance(instant(2.0 * period if overshoot < 0.0 else period))
+    events = axes.make(axis, drive, solver=solver).advance(axes.instant(2.0 * period if overshoot < 0.0 else period))
     if overshoot < 0.0:
         require(not events, f'invented at {events[0].time if events else None!r} s')
         return
@@ -74,22 +60,23 @@ def blows(setup: Setup) -> Measurement:
     """X2: 2 ms, 33 kN on a stuck axis at a random instant; rigid and compliant, pressed before or not."""
     tally = Tally(1e-12, 's')
     for seed in range(setup.choose(1000, 40)):
-        for contact in CONTACTS:
+        for contact in axes.CONTACTS:
             tally.measure(_blow, setup.solver, contact, seed)
     return tally.finding('blows missed')
 
 
-def _blow(solver: Solver, contact: Contact, seed: int) -> float:
+def _blow(solver: Solver, contact: axes.Contact, seed: int) -> float:
     """Return how far the break-away is from its instant, s."""
     rng = random.Random(seed)
-    axis = paper_axis(contact)
+    axis = axes.paper_axis(contact)
     begin, load = rng.uniform(0.0, 5.0), rng.choice((0.0, rng.uniform(-250.0, 400.0)))
     end = begin + _LENGTH
-    events = run_events(axis, 0.0, 6.0, steps('force', [0.0, begin, end], [load, load + _BLOW, load]), solver=solver)
+    blow = steps('force', [0.0, begin, end], [load, load + _BLOW, load])
+    events = axes.run_events(axis, 0.0, 6.0, blow, solver=solver)
     require(events and events[0].kind == EventKind.BREAKAWAY and begin <= events[0].time <= end,
             'no break-away within the blow')
     first = events[0]
-    if contact == RIGID:
+    if contact == axes.RIGID:
         return abs(float(exact(*first.instant) - begin))
     force = exact_contact_force(axis, [Jump(0, 0, load), Jump(begin, 0, (load + _BLOW) - load)])
     return _distance(first, force, axis.normal_force * mpf(0.24), begin, end)
@@ -108,7 +95,7 @@ def at_the_limit(setup: Setup) -> Measurement:
         for kind in StaticLawKind:
             tally.measure(_first_break, setup.solver, kind, seed)
     for share in (-1.0, 1.0):
-        for contact in CONTACTS:
+        for contact in axes.CONTACTS:
             tally.measure(_held_at_the_limit, setup.solver, contact, share)
     return tally.finding('not at the limit')
 
@@ -116,17 +103,17 @@ def at_the_limit(setup: Setup) -> Measurement:
 def _first_break(solver: Solver, kind: StaticLawKind, seed: int) -> float:
     """Return | |F| / (N mu_s) − 1 | at the instant found, from the inputs and 50 digits; no other instant before it."""
     rng = random.Random(seed)
-    axis = random_axis(rng)
+    axis = axes.random_axis(rng)
     tau, exponent = 10 ** rng.uniform(-2, 1), rng.choice((0.4, 1.0, 2.5))
     initial = axis.friction.static.initial
-    axis = with_static(axis, StaticLaw(kind, initial, initial + rng.uniform(0.01, 0.2), tau, exponent))
+    axis = axes.with_static(axis, StaticLaw(kind, initial, initial + rng.uniform(0.01, 0.2), tau, exponent))
     rest, speed, rate = 10 ** rng.uniform(-3, 1), 10 ** rng.uniform(-4, -2), 10 ** rng.uniform(-5, -2)
     if axis.drive_damping * speed > 0.5 * axis.normal_force * initial:   # its start alone must not break it away
         axis = replace(axis, drive_damping=0.5 * axis.normal_force * initial / speed)
     drive = ramp(speed, rate, float('inf'))
     duration = 1.0
     while duration < 1e9:
-        events = run_events(axis, drive, duration, initial=InitialState(rest_time=rest), solver=solver)
+        events = axes.run_events(axis, drive, duration, initial=InitialState(rest_time=rest), solver=solver)
         if events:
             break
         duration *= 8.0
@@ -147,27 +134,27 @@ def _excess_of_force(axis: Axis, event: Event, rest: float, speed: float, rate: 
         return abs(float(force / limit - 1))
 
 
-def _held_at_the_limit(solver: Solver, contact: Contact, side: float) -> None:
+def _held_at_the_limit(solver: Solver, contact: axes.Contact, side: float) -> None:
     """See that a force within the limit, and one on it, hold for ever; a relative 1e-12 more does not."""
-    axis = paper_axis(contact)
+    axis = axes.paper_axis(contact)
     limit = side * 0.24 * axis.normal_force
     if isinstance(contact, CompliantContact):   # a step would ring over it: bring it there slowly
         limit *= 1.0 + axis.drive_stiffness / contact.stiffness   # the drive spring takes its part
         reach = 1e7
         for share, holds in ((1.0 - 1e-9, True), (1.0 + 1e-9, False)):
             slow = InputProfile((0.0, reach), (0.0, share * limit), (share * limit / reach, 0.0))
-            none = run_events(axis, 0.0, 2e7, slow, solver=solver) == []
+            none = axes.run_events(axis, 0.0, 2e7, slow, solver=solver) == []
             require(none == holds, f'wrong at {share!r} of the limit')
         return
     for force, holds in ((limit * (1.0 - 1e-15), True), (limit, True), (limit * (1.0 + 1e-12), False)):
-        events = run_events(axis, 0.0, 10.0, force, solver=solver)
+        events = axes.run_events(axis, 0.0, 10.0, force, solver=solver)
         require((events == []) == holds, f'wrong under {force!r} N')
 
 
 def coasting(setup: Setup) -> Measurement:
     """X4: the peak speed stays below v_gr, where the branches are apart; the run is the reference's."""
     tally = Tally(1e-12)
-    for contact in CONTACTS:
+    for contact in axes.CONTACTS:
         for speed in setup.choose((0.001, 0.0015, 0.002, 0.003, 0.005), (0.002,)):
             tally.measure(_below_the_limit_velocity, setup.solver, contact, speed)
     for seed in range(setup.choose(60, 4)):
@@ -175,10 +162,10 @@ def coasting(setup: Setup) -> Measurement:
     return tally.finding()
 
 
-def _below_the_limit_velocity(solver: Solver, contact: Contact, speed: float) -> float:
-    axis = paper_axis(contact)
-    events = run_events(axis, speed, 3.0, solver=solver)
-    coasts = [event.velocity for event in of_kind(events, EventKind.COAST)]
+def _below_the_limit_velocity(solver: Solver, contact: axes.Contact, speed: float) -> float:
+    axis = axes.paper_axis(contact)
+    events = axes.run_events(axis, speed, 3.0, solver=solver)
+    coasts = [event.velocity for event in axes.of_kind(events, EventKind.COAST)]
     require(coasts and max(coasts) < axis.friction.kinetic.velocities[-1], 'the branches are not apart at the peak')
     _check_independent_of_steps(solver, axis, speed, events)
     return error_of_run(solver, axis, speed, 3.0)
@@ -189,18 +176,18 @@ def _random_branches(solver: Solver, seed: int) -> float:
     rng = random.Random(seed)
     top = rng.uniform(0.01, 0.05)
     kinetic = KineticTable((0.0, rng.uniform(0.2, 0.8) * top, top), (0.12, rng.uniform(0.07, 0.12), 0.05))
-    axis = paper_axis(rng.choice(CONTACTS), tau=10 ** rng.uniform(-1.5, 0))
+    axis = axes.paper_axis(rng.choice(axes.CONTACTS), tau=10 ** rng.uniform(-1.5, 0))
     axis = replace(axis, drive_damping=rng.choice((0.0, 1000.0, 4000.0)),
                    friction=replace(axis.friction, kinetic=kinetic, excess=default_excess(kinetic)))
     speed = 10 ** rng.uniform(-3.3, -2.3)
-    _check_independent_of_steps(solver, axis, speed, run_events(axis, speed, 3.0, solver=solver))
+    _check_independent_of_steps(solver, axis, speed, axes.run_events(axis, speed, 3.0, solver=solver))
     return error_of_run(solver, axis, speed, 1.5)
 
 
 def _check_independent_of_steps(solver: Solver, axis: Axis, speed: float, events: list[Event]) -> None:
     for steps_per_second in (7, 1000, 1024):
-        seen = in_parts(make(axis, speed, solver=solver),
-                        (instant((k + 1) / steps_per_second) for k in range(3 * steps_per_second)))
+        seen = in_parts(axes.make(axis, speed, solver=solver),
+                        (axes.instant((k + 1) / steps_per_second) for k in range(3 * steps_per_second)))
         same_bits(seen, events, f'{steps_per_second} steps a second')
 
 
@@ -211,6 +198,6 @@ def ringing(setup: Setup) -> Measurement:
         speed = 0.005 + 0.015 * k / setup.choose(30, 3)
         for tau in setup.choose((0.02, 0.2), (0.2,)):
             for damping in (15000.0, 0.0):
-                axis = paper_axis(CompliantContact(5e6, damping), tau=tau)
+                axis = axes.paper_axis(CompliantContact(5e6, damping), tau=tau)
                 tally.measure(error_of_run, setup.solver, axis, speed, 1.5)
     return tally.finding('with other events than the reference')

@@ -16,8 +16,7 @@ from sensor_msgs.msg import JointState
 from stickslip_msgs.msg import DriveVelocity, ExternalForce, SliderState
 
 from ...bags.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, JOINT_STATES, SLIDER_STATE
-from ...closed_loop.loop import own_controller, steps_between, steps_of
-from ...closed_loop.setpoint import as_setpoints, setpoints_at
+from ...closed_loop.loop import as_setpoints, own_controller, setpoints_at, steps_between, steps_of
 from ...controllers import Setpoint
 from ...controllers.own_controller import Command, Measurement, OwnController, load_controller, parse_gain
 from ...core.errors import InputError

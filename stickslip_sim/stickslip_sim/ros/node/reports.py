@@ -15,8 +15,7 @@ from stickslip_msgs.msg import StepTiming
 from ...bags import topics
 from ...realtime.pacing import StepClock
 from ...realtime.step_loop import StepLoop
-from ...realtime.timing_statistics import TimingWindow, Worst
-from ...realtime.verdict import Refusal, Refusals, TimingVerdict, verdict
+from ...realtime.verdict import Refusal, Refusals, TimingVerdict, TimingWindow, Worst, verdict
 from ...recording.recordings import Recordings
 from ...runs.simulated import receipt_of
 from ...scene.model import Scene

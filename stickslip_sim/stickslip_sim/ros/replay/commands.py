@@ -8,7 +8,7 @@ from threading import Event
 from rclpy.node import Node
 
 from ...core.errors import InputError
-from ...recording.playback import Recording
+from ...recording.reader import Recording
 from ...scene import Scene
 from ...scene.load import NODE
 from ...scene.schema import BY_NAME

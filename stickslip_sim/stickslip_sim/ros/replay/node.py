@@ -15,7 +15,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from ...bags.topics import CLOCK
 from ...core.time_grid import NANOSECONDS
-from ...recording.playback import Recording
+from ...recording.reader import Recording
 from ..node.endpoints import publisher, set_stamp
 from ..node.parameters import ListedNode
 from ..node.time_services import answer

@@ -15,7 +15,7 @@ from ...bags.topics import DRIVE_VELOCITY, EXTERNAL_FORCE, PARAMETER_EVENTS, RIG
 from ...core.errors import InputError, RecordingError
 from ...core.time_grid import Grid
 from ...recording import RecordedMessage, Topic
-from ...recording.playback import Recording
+from ...recording.reader import Recording
 from ...scene.schema import BY_NAME
 from ...simulation import RigEventKind
 from ..node.endpoints import deserialized, publisher

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from ...core.errors import InputError
 from ...core.time_grid import NANOSECONDS
-from ...recording.playback import Recording
+from ...recording.reader import Recording
 from ...scene.parameter import Parameter
 
 # The parameters of the replay, in the words of `ros2 bag play`, and what they make.

@@ -13,7 +13,7 @@ from rclpy.node import Node
 from ...bags.bag_files import RecordedTopic
 from ...core.errors import InputError
 from ...recording import QosProfile, schema
-from ...recording.playback import Recording
+from ...recording.reader import Recording
 from ..environment import refusing
 from ..node.endpoints import qos
 from .player import Act, nothing
