@@ -7,19 +7,23 @@ import os
 import subprocess
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import Protocol
 
 import pytest
 from hypothesis import settings
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from stickslip_sim.cli.main import run
+from stickslip_sim.plots.style import JOURNAL
 from tests.support.whole_files import pytest_xdist_make_scheduler as pytest_xdist_make_scheduler
 
 # The same examples each time, however slow a busy machine is; `make fuzz` looks for new ones.
 settings.register_profile('always the same', derandomize=True, database=None, deadline=None)
 settings.load_profile('always the same')
+
+WORKER = os.environ.get('PYTEST_XDIST_WORKER', '')    # the name of this process among several
 
 
 @pytest.hookimpl(hookwrapper=True)
@@ -34,13 +38,26 @@ def pytest_collection() -> Iterator[None]:
     gc.enable()
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector: pytest.Collector
+                               ) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Let each of several processes collect from another room on: what it rewrites and keeps, the others only read.
+
+    To rewrite three hundred files takes ten seconds of CPU, which each process would spend on all of them.
+    """
+    report = yield
+    if WORKER and isinstance(collector, pytest.Directory):
+        begin = int(WORKER.removeprefix('gw')) * len(report.result) // int(os.environ['PYTEST_XDIST_WORKER_COUNT'])
+        report.result = [*report.result[begin:], *report.result[:begin]]
+    return report
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Let several processes begin with the files that are slow, so that none of them runs alone at the end."""
-    if 'PYTEST_XDIST_WORKER' not in os.environ:
-        return
-    slow = {item.path for item in items if item.get_closest_marker('slow')}
-    counts = Counter(item.path for item in items)
-    items.sort(key=lambda item: (item.path not in slow, -counts[item.path]))
+    if WORKER:
+        slow = {item.path for item in items if item.get_closest_marker('slow')}
+        counts = Counter(item.path for item in items)
+        items.sort(key=lambda item: (item.path not in slow, -counts[item.path], item.path))
 
 
 class Program(Protocol):
@@ -70,6 +87,16 @@ def fig8_bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp('runs') / 'eight'
     assert run(['simulate', 'paper_fig8', '--duration', '3', '--bag', str(folder)]) == 0
     return folder
+
+
+@pytest.fixture(autouse=True, scope='module')
+def coarse_pictures(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Draw coarsely and without a layout, which is half of the cost, but where pictures are what is tested."""
+    with pytest.MonkeyPatch.context() as patch:
+        if request.path.parent.name not in ('plots', 'compare'):
+            patch.setattr(ConstrainedLayoutEngine, 'execute', lambda *_: None)
+            patch.setitem(JOURNAL, 'savefig.dpi', 50)
+        yield
 
 
 @pytest.fixture

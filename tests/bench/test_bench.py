@@ -26,6 +26,8 @@ from stickslip_sim.figures.distance import pair
 from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, make, paper_axis
 
+pytestmark = pytest.mark.slow
+
 FINEST = Setting(1e-12, 'tolerance')
 # docs/model.md, to ten digits: the paper's data with 2 mm/s and a rest-time constant of 0.2 s, rigid contact
 KNOWN = [(0.67979883333333, EventKind.BREAKAWAY), (0.76770114503556598, EventKind.COAST),

@@ -23,22 +23,21 @@ from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.scene import scene_names
 from tests.support.repository import ROOT
-from tests.support.tool import Capture, tool
+from tests.support.tool import Capture, answered
 
 EVENT_HEADER = 'time,kind,direction,position,velocity,drive_force,friction_force,static_coefficient,rest_time'
 SAMPLE_HEADER = 'time,position,velocity,acceleration,drive_position,drive_force,friction_force,mode'
 
 
-def test_version_and_help() -> None:
-    done = tool('--version')
-    assert (done.returncode, done.stdout) == (0, f'stickslip {__version__}\n')
-    _, _, verbs = tool('--help').stdout.partition('\nRun:\n')
+def test_version_and_help(capsys: Capture) -> None:
+    assert answered(capsys, '--version') == (0, f'stickslip {__version__}\n', '')
+    _, _, verbs = answered(capsys, '--help')[1].partition('\nRun:\n')
     assert 'simulate' in verbs
     assert '...' not in verbs    # each line is whole
-    assert '--sample-period' in tool('simulate', '--help').stdout
+    assert '--sample-period' in answered(capsys, 'simulate', '--help')[1]
 
 
-def test_every_verb_stands_in_one_section_of_the_help() -> None:
+def test_every_verb_stands_in_one_section_of_the_help(capsys: Capture) -> None:
     """A new verb is a file in cli/; without a section nobody would find it."""
     rooms = [import_module(f'{cli.__name__}.{file.stem}') for file in Path(cli.__path__[0]).glob('*.py')]
     commands = {value for room in rooms for value in vars(room).values() if isinstance(value, click.Command)}
@@ -47,8 +46,9 @@ def test_every_verb_stands_in_one_section_of_the_help() -> None:
     written = {str(verb.name) for verb in commands - inner - {stickslip}}
     listed = [str(verb.name) for verbs in stickslip.sections.values() for verb in verbs]
     assert sorted(listed) == sorted(written)
-    assert {section: [line.split()[0] for line in lines] for section, lines in sections(tool('--help').stdout)} \
-        == {section: [verb.name for verb in verbs] for section, verbs in stickslip.sections.items()}
+    assert {section: [line.split()[0] for line in lines]
+            for section, lines in sections(answered(capsys, '--help')[1])} == {
+        section: [verb.name for verb in verbs] for section, verbs in stickslip.sections.items()}
 
 
 def sections(text: str) -> list[tuple[str, list[str]]]:
@@ -57,11 +57,11 @@ def sections(text: str) -> list[tuple[str, list[str]]]:
     return [(lines[0][:-1], lines[1:]) for lines in parts if lines[0].endswith(':') and lines[0] != 'Options:']
 
 
-def test_the_installed_tool_has_a_bare_name(tmp_path: Path) -> None:
+def test_the_installed_tool_has_a_bare_name(tmp_path: Path, capsys: Capture) -> None:
     program = shutil.which('stickslip')
     assert program, 'the workspace is not sourced'
     done = subprocess.run(['stickslip', 'scenes'], capture_output=True, text=True, timeout=60, check=True, cwd=tmp_path)
-    assert done.stdout.splitlines() == tool('scenes').stdout.splitlines()
+    assert done.stdout == answered(capsys, 'scenes')[1]
 
 
 def test_scenes_are_listed_with_a_line_each(capsys: Capture) -> None:
@@ -83,11 +83,11 @@ def test_summary_of_smooth_sliding(capsys: Capture) -> None:
     assert 'smooth sliding' in capsys.readouterr().out
 
 
-def test_events_to_standard_output_are_exact() -> None:
-    done = tool('simulate', 'paper_fig8', '--duration', '3', '--events', '-')
-    assert (done.returncode, done.stderr) == (0, '')
-    assert done.stdout.splitlines()[0] == EVENT_HEADER
-    rows = list(csv.DictReader(io.StringIO(done.stdout)))
+def test_events_to_standard_output_are_exact(capsys: Capture) -> None:
+    code, out, err = answered(capsys, 'simulate', 'paper_fig8', '--duration', '3', '--events', '-')
+    assert (code, err) == (0, '')
+    assert out.splitlines()[0] == EVENT_HEADER
+    rows = list(csv.DictReader(io.StringIO(out)))
     events = [e for e in simulate_events(load_scene('paper_fig8'), 3.0).events if e.kind != EventKind.KNOT]
     assert len(rows) == len(events) > 10
     for row, event in zip(rows, events):
@@ -220,15 +220,11 @@ def test_the_estimate_in_a_bag_is_of_the_run_in_the_bag(tmp_path: Path) -> None:
     assert open_bag(tmp_path / 'bag').receipt['error_estimate'] == error_estimate(in_bag)._asdict()
 
 
-def test_no_ros_and_no_plots_unless_asked_for() -> None:
-    program = ('import sys; from stickslip_sim.cli.main import run; '
+def test_nothing_is_loaded_unless_asked_for() -> None:
+    """No numbers for the help, no ROS and no plots for a run."""
+    program = ('import sys; from stickslip_sim.cli.main import run; assert run(["--help"]) == 0; '
+               'assert not {"numba", "numpy", "yaml"} & set(sys.modules); '
                'assert run(["simulate", "paper_fig8", "--duration", "1"]) == 0; '
                'found = {"rclpy", "stickslip_msgs", "matplotlib", "mcap", "rosbags"} & set(sys.modules); '
                'assert not found, found')
-    subprocess.run([sys.executable, '-c', program], check=True, timeout=60, stdout=subprocess.DEVNULL)
-
-
-def test_help_loads_nothing_heavy() -> None:
-    program = ('import sys; from stickslip_sim.cli.main import run; assert run(["--help"]) == 0; '
-               'assert not {"numba", "numpy", "yaml"} & set(sys.modules)')
     subprocess.run([sys.executable, '-c', program], check=True, timeout=60, stdout=subprocess.DEVNULL)

@@ -21,6 +21,8 @@ from stickslip_sim.study import Sobol
 from stickslip_sim.study.sweep import WorkerError
 from tests.support.tool import Capture, answered, refused
 
+pytestmark = pytest.mark.slow
+
 DURATION = 0.4
 SCENE: dict[str, Any] = {'drive.course': 'constant', 'drive.velocity': 0.0, 'encoder.resolution': 1e-7}
 OVER: dict[str, Any] = {'friction.scale': (0.7, 1.3), 'axis.drive_stiffness': '3e5:1e6:log'}

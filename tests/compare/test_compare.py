@@ -32,6 +32,8 @@ from stickslip_sim.runs.report import named_apart
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture, answered
 
+pytestmark = pytest.mark.slow
+
 PNG = b'\x89PNG\r\n\x1a\n'
 DRIVE = 0.002   # m/s
 

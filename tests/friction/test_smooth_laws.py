@@ -44,14 +44,14 @@ KINETIC = [
     hyperbolic(0.12, 0.0, 0.015), hyperbolic(0.12, 0.05, 0.015, 0.1),
 ]
 EXCESS = [cosine(0.035), power(0.035, 2.0), power(0.1, 1.01), power(0.1, 1.0000001), power(0.1, 1.5), power(0.1, 20.0)]
-TOLERANCES = [0.5, 0.01, 1e-3, 1e-4, 1e-5]
+TOLERANCES = [0.5, 0.01, 1e-3, 1e-5]
 C = 30.0   # s of the worst event per unit of tolerance, for tolerances from 1e-3 on; measured: at most 23
 
 
 def _speeds(last: float) -> list[float]:
     """Return speeds that no construction knows, up to and far beyond the last breakpoint."""
-    inside = [last * (k + 0.5 * math.sqrt(2.0)) / 4000 for k in range(4000)]
-    return [0.0, *(last * 1e-9 ** (k / 1500) for k in range(1500)), *inside, *(last * 10.0 ** k for k in range(1, 12))]
+    inside = [last * (k + 0.5 * math.sqrt(2.0)) / 3000 for k in range(3000)]
+    return [0.0, *(last * 1e-9 ** (k / 500) for k in range(500)), *inside, *(last * 10.0 ** k for k in range(1, 12))]
 
 
 @pytest.mark.parametrize('tolerance', TOLERANCES)
@@ -260,7 +260,7 @@ def break_away(law: StaticLaw, rest: float, speed: float, rate: float, push: flo
         force = STIFFNESS * (v * t + a * t * t / 2) + DAMPING * (v + a * t) + f * t
         return force - mp.mpf(NORMAL) * exact_static_coefficient(law, mp.mpf(rest) + t)
 
-    step = mp.mpf(1) / 512
+    step = mp.mpf(1) / 128
     before = mp.mpf(0)
     while beyond(before + step) < 0:
         before += step
@@ -322,9 +322,9 @@ def with_a_jump(axis: Axis, rng: random.Random, distance: float) -> Axis:
 
 
 def unsound_runs(distance: float) -> int:
-    """Return how many of 300 runs contradict themselves."""
+    """Return how many of 150 runs contradict themselves."""
     count = 0
-    for seed in range(300):
+    for seed in range(150):
         rng = random.Random(seed)
         axis, (drive, force) = with_a_jump(random_axis(rng), rng, distance), random_profiles(rng)
         simulator = Simulator(axis, InitialState(), drive, force, accounting=True)

@@ -9,6 +9,8 @@ from hypothesis import HealthCheck, given, settings
 
 from tests.fuzz.targets import Target, targets
 
+pytestmark = pytest.mark.slow
+
 EXAMPLES = {'scene': 150, 'limits': 150, 'override': 150, 'bag': 75, 'distributions': 100, 'options': 100, 'study': 15,
             'engine': 30, 'reference': 5}
 AT_EASE = settings(suppress_health_check=list(HealthCheck))

@@ -17,6 +17,8 @@ from tests.hostile.case import Case, Run, Undecided, Values, run
 from tests.hostile.generators import GENERATORS, draw
 from tests.hostile.judges import JUDGES, guards, reference
 
+pytestmark = pytest.mark.slow
+
 RNG = random.Random(0)
 CASE = Case(draw.paper() | draw.constant(0.002), 3.0)
 TOUCHING = Case(draw.axis(350.0, 6e5, 0.0, 3432.3275) | draw.contact(5e6, 0.0) | draw.static(0.12)

@@ -19,6 +19,8 @@ from tests.hostile.generators import GENERATORS
 from tests.hostile.judges import brute
 from tests.support.axes import COMPLIANT, RIGID, Contact, paper_axis
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip('mpmath')
 
 ADAPTIVE = {'solver.name': 'adaptive'}

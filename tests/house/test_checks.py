@@ -15,6 +15,8 @@ import yaml
 from dev.links import broken_links, missing_paths
 from tests.support.repository import ROOT
 
+pytestmark = pytest.mark.slow
+
 TOOLS = Path(sys.executable).parent
 
 

@@ -24,6 +24,8 @@ from tests.support.ros_nodes import client
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE
 
+pytestmark = pytest.mark.slow
+
 KNOWN = {'sim_node': set(BY_NAME), 'compensating_controller': {entry.name for entry in (*COMMON, *COMPENSATION)}}
 ENTRYPOINT = '/opt/stickslip/docker/entrypoint'
 

@@ -19,6 +19,8 @@ from stickslip_sim.core.version import __version__
 from tests.support.copied_package import copy_package
 from tests.support.repository import ROOT
 
+pytestmark = pytest.mark.slow
+
 MARKDOWN = SOURCE.read_text(encoding='utf-8')
 DATA = ROOT / 'tests/data/rosdep'
 INDEX = """\
@@ -148,7 +150,6 @@ def test_the_built_workspace_has_programs_and_files() -> None:
     has_programs_and_files(ROOT / 'ros2_ws/install/stickslip_sim')
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize('command', INSTALLATIONS.values(), ids=INSTALLATIONS)
 def test_an_installation_has_programs_and_files(command: list[str], tmp_path: Path) -> None:
     pytest.importorskip('rclpy')

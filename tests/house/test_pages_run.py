@@ -15,7 +15,9 @@ from benchmarks.loop_pictures import PICTURES as LOOP_PICTURES
 from benchmarks.loop_pictures import blocks, page_commands, write_inputs
 from benchmarks.maps import CRITICAL, PICTURES, UNCERTAIN, picture_of
 from benchmarks.page import part_of, quoted
+from stickslip_sim.closed_loop.tuning_report import tuning_report
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.report.text import text_lines
 from tests.support.repository import ROOT
 from tests.support.tool import Capture, answered
 
@@ -62,6 +64,8 @@ def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
     for block in (controller + loop, tuned, many):
         exec(block, names)
         assert capsys.readouterr().out in CLOSED_LOOP.replace('    ', '')
+    report = text_lines(tuning_report(names['found']))    # what the command prints
+    assert '\n'.join(f'    {line}'.rstrip() for line in report) in CLOSED_LOOP
     exec(lanes, names)
     assert names['loops'].pass_rate.passed == 64
     for picture in ('run.png', 'tune.png'):
@@ -70,8 +74,9 @@ def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
     assert len(page_commands()) == 10
     for words in page_commands():
         if words[0] == 'tune':
-            continue    # tests/closed_loop/test_tuning.py compares what it says
-        code, said, errors = answered(capsys, *['8' if word == '1000' else word for word in words])
+            continue
+        fewer = {'--samples': '8', '--workers': '1'}
+        code, said, errors = answered(capsys, *[fewer.get(before, word) for before, word in zip(['', *words], words)])
         if '--samples' in words or '--controllers' in words:    # some of the axes, and one gain, do not keep the limits
             assert (code, '8 of 8 pass' in said) == (3, False)
         else:
@@ -119,9 +124,11 @@ class TestIdentification:
         """Return start and found value of each parameter, in the unit that is printed."""
         return {row[1]: (float(row[2]), float(row[3])) for row in self.ROW.finditer(text)}
 
+    @pytest.mark.usefixtures('blank_pictures')
     def test_the_commands_find_what_it_says(self, capsys: Capture) -> None:
         for name, commands in COMMANDS.items():
-            said = [done(capsys, command) for command in commands if name != FAILS]    # that one takes a minute
+            said = [done(capsys, command.replace('--samples 64', '--samples 8'))
+                    for command in commands if name != FAILS]    # that one takes a minute
             if name == 'synthetic':
                 printed, here = self.found_in(part_of(IDENTIFICATION, name)), self.found_in(said[-1])
                 assert set(printed) == set(here) == set(TRUTH)

@@ -28,6 +28,8 @@ from stickslip_sim.runs import Run, simulate, simulate_events
 from stickslip_sim.runs.picture import sampled
 from stickslip_sim.simulation.step_result import Mark
 
+pytestmark = pytest.mark.slow
+
 EDGES: Numbers = np.linspace(0.0, 10.0, BINS + 1, dtype=np.float64)
 PNG = b'\x89PNG\r\n\x1a\n'
 

@@ -12,6 +12,8 @@ from stickslip_sim.proof.judges import Setup, Tally
 from stickslip_sim.proof.suite import EXTREMES, chosen, results
 from stickslip_sim.solvers import fixed_step
 
+pytestmark = pytest.mark.slow
+
 STEPPED = Setup(full=False, solver=fixed_step.solver('rk4', 1e-3))
 
 
@@ -22,7 +24,7 @@ def test_every_mark_is_met(number: str) -> None:
     assert outcome.finding.cases > 0
 
 
-@pytest.mark.parametrize('number', ['X1', 'X2', 'X4', 'X5', 'X6', 'X16', 'X21', 'X25'])
+@pytest.mark.parametrize('number', ['X1', 'X4', 'X6', 'X16', 'X25'])
 def test_a_solver_that_steps_misses_the_mark(number: str) -> None:
     (outcome,) = results(chosen([number]), STEPPED)
     assert not outcome.passed

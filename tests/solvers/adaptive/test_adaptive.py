@@ -22,6 +22,8 @@ from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, of_kind, paper_axis
 from tests.support.solver_runs import EXACT, firm, make, of_scene, simulate
 
+pytestmark = pytest.mark.slow
+
 TIGHT = adaptive.solver('DOP853', 1e-11, 1e-13)
 
 

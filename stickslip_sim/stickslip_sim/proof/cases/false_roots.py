@@ -47,7 +47,7 @@ def steep_segments(setup: Setup) -> Measurement:
     tally.measure(_equals_the_reference, setup.solver, _blown_up(), 0.1, 0.0, 60.0)
     for k in setup.choose(tuple(range(0, 400, 2)), (186, 210)):
         tally.measure(_equals_the_reference, setup.solver, _paper_axis(5e-5 * 10.0 ** (k / 399)), 0.01, 0.0, 3.0)
-    for seed in range(setup.choose(100, 6)):
+    for seed in range(setup.choose(100, 3)):
         rng = random.Random(seed)
         tally.measure(_equals_the_reference, setup.solver, _steep(rng), 10 ** rng.uniform(-4, -1), 0.0, 3.0)
     return tally.finding('with other events than the reference')
