@@ -81,7 +81,7 @@ pages: tools  ## what is made from the code in docs/api.md, docs/scene.md and th
 	@$(HERE) python3 -m dev.pages
 
 docs: tools  ## the pages in docs/ as a site in runs/docs/
-	@$(TOOLS)/mkdocs build && echo runs/docs/index.html
+	@$(TOOLS)/mkdocs build && $(HERE) python3 -m stickslip_sim explore paper_fig8 --out runs/docs/explorer.html && echo runs/docs/index.html
 
 clean:  ## remove everything that was set up, built or cached in this tree
 	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache

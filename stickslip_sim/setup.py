@@ -80,7 +80,8 @@ setup(
     license='Apache-2.0',
     packages=find_packages(include=[NAME, f'{NAME}.*']),
     package_data={NAME: ['py.typed', 'scenes/*.yaml', 'bags/stickslip_msgs/*.msg', 'ros/*.xml', 'plain_c/*.[ch]',
-                         'plain_c/*.comp', 'fmu/*.c']},
+                         'plain_c/*.comp', 'fmu/*.c', 'explorer/*.js', 'explorer/page.html',
+                         'explorer/page.css']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (SHARE, ['package.xml']),

@@ -11,6 +11,7 @@ from setuptools import Extension
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import SetupError
 
+from .javascript import script
 from .sources import UnitError
 from .unit import ENTRIES, LOOPS, Unit
 
@@ -62,7 +63,7 @@ class BuildUnit(build_ext):  # type: ignore[misc]
             if name == '_fmu':
                 return [self._write(file, text) for file, text in unit.fmu(package).items()][1:]
             self._write('engine.c', unit.text(ENTRIES | LOOPS))
-            return [self._write(f'{name}.pyx', unit.wrapper('engine.c'))]
+            return [self._write(f'{name}.pyx', unit.wrapper('engine.c', script(unit)))]
         except UnitError as error:
             raise SetupError(str(error)) from None
 

@@ -14,8 +14,10 @@ _PLAIN = {'float': DOUBLE, 'int': LONG, 'bool': BOOL, 'complex': COMPLEX, 'None'
 # the files with records, each behind those whose records it holds
 RECORD_FILES = ('axis/layout.py', 'axis/state_record.py', 'axis/rows.py', 'solvers/exact/axis_figures.py',
                 'solvers/exact/pieces.py')
-_WORDS = frozenset({'auto', 'char', 'const', 'default', 'double', 'float', 'int', 'long', 'register', 'short', 'signed',
-                    'static', 'switch', 'union', 'void', 'volatile'})   # of C, which Python has as names
+# of C and JavaScript, which Python has as names
+_WORDS = frozenset({'auto', 'case', 'char', 'const', 'default', 'delete', 'double', 'float', 'function', 'int', 'let',
+                    'long', 'new', 'register', 'short', 'signed', 'static', 'switch', 'this', 'union', 'var', 'void',
+                    'volatile'})
 
 Kind = Union[str, 'TupleKind', 'Record']
 

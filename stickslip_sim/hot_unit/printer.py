@@ -18,7 +18,7 @@ _C_FUNCTIONS = frozenset({'asin', 'atan2', 'copysign', 'cos', 'exp', 'expm1', 'f
 _OPERATORS = {ast.Add: ('+', 10), ast.Sub: ('-', 10), ast.Mult: ('*', 11), ast.Div: ('/', 11)}
 _COMPARISONS = {ast.Lt: '<', ast.LtE: '<=', ast.Gt: '>', ast.GtE: '>=', ast.Eq: '==', ast.NotEq: '!='}
 _ON_COMPLEX = {ast.Add: 'sum_of', ast.Sub: 'difference_of', ast.Mult: 'product_of'}
-_CHOICE, _AND, _COMPARED, _UNARY, _POSTFIX = 1, 3, 8, 12, 13   # how tight operators of C bind
+_CHOICE, _AND, _COMPARED, _UNARY, _POSTFIX = 1, 3, 8, 12, 13   # how tight operators bind
 _LINE = 112
 
 
@@ -31,7 +31,7 @@ def head_of(function: ast.FunctionDef, scope: Scope) -> str:
 
 def printed(function: ast.FunctionDef, scope: Scope) -> tuple[str, dict[str, Any], list[TupleKind]]:
     """Return a function in C, the names that it uses (values of constants, too) and its tuples; raises UnitError."""
-    body = _Body(function, scope)
+    body = Body(function, scope)
     lines = list(body.block(function.body[ast.get_docstring(function) is not None:], 1))
     docstring = (ast.get_docstring(function) or '').partition('\n')[0]
     locals_: dict[str, list[str]] = {}
@@ -46,8 +46,14 @@ def printed(function: ast.FunctionDef, scope: Scope) -> tuple[str, dict[str, Any
                               if isinstance(kind, TupleKind)]
 
 
-class _Body(ast.NodeVisitor):
-    """Statements as lines, expressions as text that is in parentheses where something binds tighter outside of it."""
+class Body(ast.NodeVisitor):
+    """Statements as lines, expressions as text that is in parentheses where something binds tighter outside of it.
+
+    What another language writes in another way stands in methods without an underscore.
+    """
+
+    counter = LONG   # what a counter is declared as
+    arrow = '->'     # from a record to its field
 
     def __init__(self, function: ast.FunctionDef, scope: Scope) -> None:
         self._function, self._scope, self.types = function, scope, LocalTypes(function, scope)
@@ -107,8 +113,9 @@ class _Body(ast.NodeVisitor):
         end, counter = self._as(call.args[-1], LONG), ast.unparse(node.target)
         counter = f'turn{next(self._numbers)}' if counter == '_' else c_name(counter)
         if isinstance(call.args[-1], ast.Constant | ast.Name):
-            return f'for (long {counter} = {begin}; {counter} < {end}; {counter}++)'
-        return f'for (long {counter} = {begin}, {counter}_end = {end}; {counter} < {counter}_end; {counter}++)'
+            return f'for ({self.counter} {counter} = {begin}; {counter} < {end}; {counter}++)'
+        return (f'for ({self.counter} {counter} = {begin}, {counter}_end = {end}; {counter} < {counter}_end; '
+                f'{counter}++)')
 
     def _assigned(self, targets: Sequence[ast.expr], value: ast.expr) -> Iterator[str]:
         if not isinstance(targets[0], ast.Tuple):
@@ -128,7 +135,7 @@ class _Body(ast.NodeVisitor):
         if not isinstance(value, ast.Name):
             place = f'got{next(self._numbers)}'
             self.tuples.append(kind)
-            yield f'{text_of(kind)} {place} = {self._as(value, kind)};'
+            yield f'{self.declared(kind)} {place} = {self._as(value, kind)};'
         for part, field in zip(parts, kind.fields, strict=True):
             if ast.unparse(part) != '_':
                 yield f'{self.text(part)} = {place}.{field};'
@@ -178,12 +185,28 @@ class _Body(ast.NodeVisitor):
         if kind == COMPLEX and own != COMPLEX:
             return f'complex_of({self.text(node)}, 0.0)'
         if isinstance(own, Record) and own.within and not own.many:
-            return f'&{self.text(node, _UNARY)}'
+            return self.pointer_to(self.text(node, _UNARY))
         return self.text(node)
+
+    def declared(self, kind: Kind) -> str:
+        """Return the type with which a tuple is declared."""
+        return text_of(kind)
+
+    def pointer_to(self, text: str) -> str:
+        """Return where a record is."""
+        return f'&{text}'
+
+    def tuple_of(self, kind: TupleKind, items: Sequence[str]) -> str:
+        """Return a tuple of these."""
+        return f'({text_of(kind)}){{{", ".join(items)}}}'
+
+    def cast(self, kind: str, node: ast.expr) -> str:
+        """Return a number as one of another type."""
+        return f'({kind}){self.text(node, _UNARY)}'
 
     def _made(self, kind: TupleKind, items: Sequence[ast.expr]) -> str:
         self.tuples.append(kind)
-        return f'({text_of(kind)}){{{", ".join(self._as(item, one) for item, one in zip(items, kind, strict=True))}}}'
+        return self.tuple_of(kind, [self._as(item, one) for item, one in zip(items, kind, strict=True)])
 
     def visit_Constant(self, node: ast.Constant) -> tuple[str, int]:
         """Return a number."""
@@ -211,7 +234,7 @@ class _Body(ast.NodeVisitor):
                 return OF_MATH.get(node.attr, node.attr), _POSTFIX
             self._refuse(node, f'math.{node.attr}, which the unit does not take from C')
         is_pointer = isinstance(node.value, ast.Name) and isinstance(self.types.kind(node.value), Record)
-        return f'{self.text(node.value, _POSTFIX)}{"->" if is_pointer else "."}{c_name(node.attr)}', _POSTFIX
+        return f'{self.text(node.value, _POSTFIX)}{self.arrow if is_pointer else "."}{c_name(node.attr)}', _POSTFIX
 
     def visit_Subscript(self, node: ast.Subscript) -> tuple[str, int]:
         """Return an item of a row, or of a tuple."""
@@ -236,7 +259,7 @@ class _Body(ast.NodeVisitor):
         if node.keywords:
             self._refuse(node, f'{name} with names of arguments; give them in order')
         if name in ('int', 'float'):
-            return f'({LONG if name == "int" else DOUBLE}){self.text(given[0], _UNARY)}', _UNARY
+            return self.cast(LONG if name == 'int' else DOUBLE, given[0]), _UNARY
         if name in ('max', 'min'):
             if self.types.kind(node) != DOUBLE:
                 self._refuse(node, f'{name} of integers, which the unit does not have')
@@ -265,7 +288,7 @@ class _Body(ast.NodeVisitor):
         operator, level = _OPERATORS[type(node.op)]
         left = self.text(node.left, level)
         if operator == '/' and DOUBLE not in sides:
-            left = f'(double){self.text(node.left, _UNARY)}'
+            left = self.cast(DOUBLE, node.left)
         return f'{left} {operator} {self.text(node.right, level + 1)}', level
 
     def visit_UnaryOp(self, node: ast.UnaryOp) -> tuple[str, int]:

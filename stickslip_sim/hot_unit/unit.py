@@ -95,17 +95,14 @@ class Unit:
         self.names = sorted({*RECORD_FILES, *(source.name for source in self._hot)})
         self.digest = digest_of(package, self.names)
         self._printed: dict[str, _Printed] = {}
-        for source in self._hot:
-            for name, function in source.functions.items():
-                scope = self._scopes[source.name]
-                key = source.unit_name(name)
-                if key in self._printed:
-                    raise UnitError(source.path, function, f'{key} is there twice; rename one')
-                self._printed[key] = _Printed(source, head_of(function, scope), *printed(function, scope))
+        for key, function, scope in self.functions():
+            if key in self._printed:
+                raise UnitError(scope.source.path, function, f'{key} is there twice; rename one')
+            self._printed[key] = _Printed(scope.source, head_of(function, scope), *printed(function, scope))
 
     def text(self, roots: Mapping[str, Sequence[str]]) -> str:
         """Return the C of some functions, by file, and of all that they need."""
-        used = self._reached([self._sources.of(file).unit_name(one) for file, names in roots.items() for one in names])
+        used = self.reached(roots)
         functions = {name: one for name, one in self._printed.items() if name in used}
         parts = [_HEAD, _BASICS, *self._structures(functions.values()), _CLEAR, *self._values(used), '',
                  *(f'{one.head};' for one in functions.values())]
@@ -129,16 +126,27 @@ class Unit:
         return {'stickslip_axis.h': Template(header).substitute(words),
                 'stickslip_axis.c': self.text(EXPORTED) + axis, 'stickslip_fmu.c': fmu}
 
-    def wrapper(self, include: str) -> str:
-        """Return the Cython of the entries and of the classes that they work on, around the C of a file."""
+    def wrapper(self, include: str, script: str) -> str:
+        """Return the Cython of the entries and of the classes that they work on, around the C of a file.
+
+        It carries the script of a page, too.
+        """
         words = {**self._record_words(), 'SOURCES': repr(tuple(self.names)), 'DIGEST': self.digest, 'FILE': include,
                  'ENGINE': repr(zlib.compress(self.text(EXPORTED).encode(), 9)),
+                 'SCRIPT': repr(zlib.compress(script.encode(), 9)),
                  'DECLARED': '\n    '.join(self._declared()), 'ENTRIES': '\n\n'.join(self._entries())}
         return Template((Path(__file__).parent / 'wrapper.pyx.in').read_text(encoding='utf-8')).substitute(words)
 
-    def _reached(self, names: Sequence[str]) -> dict[str, object]:
-        """Return the names that functions use, and those that these use, with the values of constants."""
-        found, left = dict[str, object](), dict[str, object].fromkeys(names)
+    def functions(self) -> Iterator[tuple[str, ast.FunctionDef, Scope]]:
+        """Yield all functions, with their names in the unit and what names mean in their files."""
+        for source in self._hot:
+            for name, function in source.functions.items():
+                yield source.unit_name(name), function, self._scopes[source.name]
+
+    def reached(self, roots: Mapping[str, Sequence[str]]) -> dict[str, object]:
+        """Return the names that functions, by file, use, and those that these use, with the values of constants."""
+        found, left = dict[str, object](), dict[str, object].fromkeys(
+            self._sources.of(file).unit_name(one) for file, names in roots.items() for one in names)
         while left:
             name, value = left.popitem()
             found[name] = value

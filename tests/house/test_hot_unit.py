@@ -6,10 +6,12 @@ import os
 import shutil
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import pytest
 
+from hot_unit.javascript import script
 from hot_unit.unit import Unit
 from stickslip_sim.core import hot_path
 from tests.support.repository import ROOT
@@ -48,6 +50,7 @@ def test_every_marked_function_is_in_the_unit(tmp_path: Path) -> None:
     if hot_path.UNIT is not None:
         unit = Unit(PACKAGE)
         assert (unit.digest, tuple(unit.names)) == (hot_path.UNIT.DIGEST, hot_path.UNIT.SOURCES)
+        assert zlib.decompress(hot_path.UNIT.SCRIPT).decode() == script(unit)
 
 
 def test_a_function_keeps_its_names(tmp_path: Path) -> None:

@@ -1,0 +1,41 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip explore`: a scene as a page with sliders, for any browser."""
+
+from pathlib import Path
+
+import click
+
+from . import completion
+from .arguments import SceneChanges, check_run, recorded_run, scene_changes, verb
+from .files import FILE, say_written, write_text
+
+
+@verb(short_help='Write a scene as a page with sliders.')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@click.option('--out', type=FILE, default='explore.html', metavar='FILE.html', help='Write the page there [default: '
+                                                                                   'explore.html].')
+@click.option('--beside', metavar='RUN', help='Draw a measured run behind: a run folder, a bag, or a CSV file with '
+                                              'time, position, velocity or drive_force, in SI.')
+@scene_changes('Change a parameter of the scene.')
+def explore(scene: str, out: str, beside: str | None, changes: SceneChanges) -> None:
+    """Write SCENE as one file of HTML that opens in any browser, without a server and without the network.
+
+    A slider moves, the exact engine runs, the picture follows; "Copy scene" gives the scene for the tool and the node.
+    """
+    from ..explorer.page import COLUMNS, page_of, thinned
+
+    loaded = changes.load(scene)
+    columns = None
+    if beside is not None and Path(beside).suffix == '.csv':
+        from ..inputs.csv_table import heading_of
+        from ..inputs.measurement import Measurement
+
+        check_run(beside)
+        names = heading_of(Path(beside))
+        measured = Measurement.from_file(beside, {name: name for name in COLUMNS if name in names})
+        columns = thinned({'time': measured.times, **measured.columns})
+    elif beside is not None:
+        columns = thinned(recorded_run(beside).samples)
+    write_text(out, [page_of(loaded, columns)])
+    say_written(out)
