@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .core.types import Event, EventKind, Instant, Mode, Sample
     from .figures.cycles import Cycle, Summary
     from .identification.identify import identify
+    from .identification.run_friction import friction_curve
     from .inputs import load_scene
     from .inputs.measurement import Measurement
     from .inputs.scene_files import simulate, simulate_events
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from .runs.batch import run_batch
     from .runs.error_estimate import error_estimate
     from .scene import Scene, scene_names
+    from .sensitivity.experiments import design
     from .sensitivity.sensitivities import Sensitivities, sensitivities
     from .simulation.simulator import Simulator
     from .study.in_memory import critical, sweep, uncertainty
@@ -48,8 +50,8 @@ __all__ = [
     'Command', 'ControllerError', 'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Measurement', 'Mode',
     'RecordingError', 'RecordingWarning', 'Run', 'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError',
     'StickslipError', 'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'close_loops',
-    'critical', 'error_estimate', 'identify', 'load_scene', 'plot_runs', 'read_run', 'run_batch', 'scene_names',
-    'sensitivities', 'simulate', 'simulate_events', 'sweep', 'tune', 'uncertainty',
+    'critical', 'design', 'error_estimate', 'friction_curve', 'identify', 'load_scene', 'plot_runs', 'read_run',
+    'run_batch', 'scene_names', 'sensitivities', 'simulate', 'simulate_events', 'sweep', 'tune', 'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
@@ -62,6 +64,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.core.types': ('Event', 'EventKind', 'Instant', 'Mode', 'Sample'),
         '.figures.cycles': ('Cycle', 'Summary'),
         '.identification.identify': ('identify',),
+        '.identification.run_friction': ('friction_curve',),
         '.inputs': ('load_scene',),
         '.inputs.measurement': ('Measurement',),
         '.inputs.scene_files': ('simulate', 'simulate_events'),
@@ -70,6 +73,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.runs.batch': ('run_batch',),
         '.runs.error_estimate': ('error_estimate',),
         '.scene': ('Scene', 'scene_names'),
+        '.sensitivity.experiments': ('design',),
         '.sensitivity.sensitivities': ('Sensitivities', 'sensitivities'),
         '.simulation.simulator': ('Simulator',),
         '.study.in_memory': ('critical', 'sweep', 'uncertainty'),

@@ -234,7 +234,7 @@ def of_library() -> bytes:
 def test_blocks_and_single_messages_make_the_bytes_of_the_library(size: int) -> None:
     """Chunks end at the same message, wherever a block ends; 0: one by one."""
     output = Memory()
-    file = McapFile(output, CHUNK, 'us')
+    file = McapFile(output, CHUNK, 'us', 3)
     file.add_metadata('first', {'a': 'b'})
     file.add_attachment(0, 'scene.yaml', 'application/yaml', b'scene')
     for topic in 'abc':

@@ -25,6 +25,7 @@ from stickslip_sim.figures.cycles import (
     cycle_figures,
     mode_spans,
     summary,
+    summary_report,
 )
 from stickslip_sim.figures.distance import (
     cycle_difference,
@@ -41,7 +42,6 @@ from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.report.text import text_lines
 from stickslip_sim.runs import simulate_events
-from stickslip_sim.runs.report import summary_report
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.axes import COMPLIANT, RIGID, Contact, make, paper_axis, run_events
 

@@ -15,7 +15,7 @@ from benchmarks.loop_pictures import PICTURES as LOOP_PICTURES
 from benchmarks.loop_pictures import blocks, page_commands, write_inputs
 from benchmarks.maps import CRITICAL, PICTURES, UNCERTAIN, picture_of
 from benchmarks.page import part_of, quoted
-from stickslip_sim.closed_loop.tuning_report import tuning_report
+from stickslip_sim.closed_loop.report import tuning_report
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.report.text import text_lines
 from tests.support.repository import ROOT

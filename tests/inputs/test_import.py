@@ -269,6 +269,7 @@ CALLS: dict[str, Callable[[SceneOrPath], object]] = {
     'close_loops': lambda scene: repr(
         stickslip.close_loops(creep, scene, 0.05, {'axis.mass': (50.0, 200.0, 2)}).columns),
     'critical': lambda scene: stickslip.critical(scene, 'axis.mass', (50.0, 200.0), 0.5),
+    'friction_curve': lambda scene: repr(stickslip.friction_curve(stickslip.simulate(scene, 0.5), scene=scene).columns),
     'identify': refusal_of_identify,
     'sensitivities': lambda scene: repr(stickslip.sensitivities(scene, ['event.1.time'], ['axis.drive_stiffness'])),
     'simulate': lambda scene: run_of(stickslip.simulate(scene, 0.5, 0.1)),
@@ -350,6 +351,54 @@ EXPORTS = {
 }
 
 
+# Those of drives: units of turns and ratings, columns that repeat or end blank, and what is refused.
+
+DRIVES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
+    'startdrive': ('\ufeffFormat;Trace\r\nSampling time;1 ms\r\n\r\nTime [ms];r62 [rpm];r80 M_act [Nm];x [LU]\r\n'
+                   + lines('{0};1,5;{2};{1};;\r\n', str, comma, lambda force: comma(force / 100.0)),
+                   {'time': 'Time', 'position': 'x', 'drive_force': 'r80 M_act'}, {'position': 'mm'}),
+    'twincat 3': ('Name\tScope\nFile\tx.svdx\n\nName\tPos\tPos\tM\tM\nData-Type\tREAL64\tREAL64\tINT16\tINT16\n'
+                  'SampleTime[ms]\t1\t1\t1\t1\n' + lines('{0}\t{1}\t{0}\t{2}\t\n', str, comma, str) + 'EOF\n',
+                  {'time': '1', 'position': '2', 'drive_force': '4'},
+                  {'time': 'ms', 'position': 'mm', 'drive_force': '%'}),
+    'rigol': ('X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,0.0,1.0e-03\n' + lines('{},{},{},,\n', str, str, str),
+              {'time': 'X', 'position': 'CH1', 'drive_force': 'CH2'},
+              {'time': '1 ms', 'position': '1 mm', 'drive_force': '-1 N'}),
+    'heidenhain': ('TNCscope V3\n\nZeit;s ist X;I soll X\n[ms];[mm];[A]\n' + lines('{};{};{};\n', str, comma, comma),
+                   {'time': 'Zeit', 'position': 's ist X', 'drive_force': 'I soll X'}, {'drive_force': '35.15 N'}),
+}
+SCALES = {'startdrive': 2.0 * np.pi, 'twincat 3': 8.0, 'rigol': -1.0, 'heidenhain': 35.15}
+
+
+@pytest.mark.parametrize('name', DRIVES)
+def test_an_export_of_a_drive(name: str, tmp_path: Path) -> None:
+    text, columns, units = DRIVES[name]
+    path = tmp_path / 'export.csv'
+    path.write_text(text)
+    found = stickslip.Measurement.from_file(path, columns, units, '10 mm', rated='800 N')
+    time, position, force = np.array(ROWS).T
+    np.testing.assert_allclose(found.times, 1e-3 * time, rtol=1e-14)
+    np.testing.assert_allclose(found.columns['position'], 1e-3 * position, rtol=1e-14)
+    np.testing.assert_allclose(found.columns['drive_force'], SCALES[name] * force, rtol=1e-14)
+
+
+def test_the_units_of_labview_are_taken(tmp_path: Path) -> None:
+    nptdms = pytest.importorskip('nptdms', reason='npTDMS is not installed')
+    time, position, _ = np.array(ROWS).T
+    of_time = {'wf_increment': 1e-3, 'wf_start_offset': 0.0, 'wf_samples': len(time)}
+    with nptdms.TdmsWriter(str(tmp_path / 'run.tdms')) as file:
+        file.write_segment([nptdms.ChannelObject('axis', 'x', position, {**of_time, 'unit_string': 'mm'}),
+                            nptdms.ChannelObject('axis', 'U', position, {**of_time, 'unit_string': 'Volts'})])
+    found = stickslip.Measurement.from_file(tmp_path / 'run.tdms', {'time': 'time', 'position': 'x'})
+    np.testing.assert_allclose(found.times, 1e-3 * time, rtol=1e-14)
+    np.testing.assert_allclose(found.columns['position'], 1e-3 * position, rtol=1e-14)
+    with pytest.raises(stickslip.InputError, match='Volts'):
+        stickslip.Measurement.from_file(tmp_path / 'run.tdms', {'time': 'time', 'position': 'U'})
+    (tmp_path / 'bad.tdms').write_bytes(b'no segment' * 20)
+    with pytest.raises(stickslip.InputError, match='a readable TDMS file'):
+        stickslip.Measurement.from_file(tmp_path / 'bad.tdms', {'time': 'time', 'position': 'x'})
+
+
 @pytest.mark.parametrize('name', EXPORTS)
 def test_an_export_as_it_comes(name: str, tmp_path: Path, capsys: Capture) -> None:
     text, columns, units = EXPORTS[name]
@@ -370,6 +419,11 @@ def test_an_export_as_it_comes(name: str, tmp_path: Path, capsys: Capture) -> No
     ('t,x\n0,0\n1,1\n1,2\n', (), 'bad.csv line 4 = 1.0 is refused: must be a time after the one before it, 1.0 s'),
     ('t,n [rpm]\n0,0\n1,1\n', ('velocity=n',), "--unit = '[rpm]' is refused: must be one of m/s, cm/s, mm/s"),
     ('t,x [V]\n0,0\n1,1\n', (), "--unit = '[V]' is refused"),
+    ('t,M [%]\n0,0\n1,1\n', ('drive_force=M',), 'it is of a rating: give --rated'),
+    ('t;x\n0;0\n1;1.000,5\n', (), 'export it without points between thousands'),
+    ('t,x\n0,1\n12:00:01,2\n', (), 'a time of day: count rows instead'),
+    ('t;x\n0;0\n1;1\nt;x\n2;2\n', (), "bad.csv line 4 = 't' is refused"),
+    ('t,x\n0,0\n1,1\n', ('', '--rated', '-3 N'), "--rated = '-3 N' is refused: must be > 0"),
     ('t,x\n0,0\n1,1\n', ('', '--lead', '10'), "--lead = '10' is refused: must be a number with its unit"),
     ('t,x\n0,0\n1,1\n', ('', '--from', '5'), 'there are none'),
     ('t,x,x\n0,0,0\n1,1,1\n', (), '2 columns have this name; take its number, 2 or 3'),

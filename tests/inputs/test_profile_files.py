@@ -10,7 +10,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError, RecordingError
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.inputs.csv_table import FORCES, SPEEDS, all_in_si, in_si
+from stickslip_sim.inputs.units import FORCES, SPEEDS, all_in_si, in_si
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene import Scene, parse_scene

@@ -147,7 +147,18 @@ def _topic(topic: Topic, type_hash: str, count: int) -> Yaml:
     }
 
 
-CHUNK_SIZE = 64 * 1024  # a larger chunk takes longer to close than a step may wait
+
+
+class Packing(NamedTuple):
+    """How many bytes make a chunk, and how hard zstd tries, from 1 on."""
+
+    chunk_size: int
+    level: int
+
+
+IN_STEP = Packing(64 * 1024, 3)      # a larger chunk takes longer to close than a step may wait
+AT_ONCE = Packing(1024 * 1024, 1)    # of many messages that are known
+CHUNK_SIZE = IN_STEP.chunk_size
 METADATA = 'stickslip'  # the record that says what simulated the run
 NEXT_FILE = 'stickslip_next'   # at the end of a file that was split: the one in which the bag goes on
 _WALL = 'wall'       # log times in the metadata, where they are not simulation time
@@ -182,7 +193,7 @@ class BagWriter:
 
     def __init__(
         self, folder: Path | str, topics: Sequence[Topic], attachments: Mapping[str, bytes],
-        metadata: Mapping[str, str], split: Split = ONE_FILE,
+        metadata: Mapping[str, str], split: Split = ONE_FILE, packing: Packing = IN_STEP,
     ) -> None:
         self.folder = Path(os.path.abspath(folder))
         self._topics = list(topics)
@@ -191,7 +202,7 @@ class BagWriter:
                                 'topic_type_hash': self._schemas[topic.type].hash} for topic in topics]
         self._attachments, self._metadata = dict(attachments), dict(metadata)
         self._is_by_wall_clock = is_by_wall_clock(metadata)
-        self._split = split
+        self._split, self._packing = split, packing
         self._parts: list[BagFile] = []       # the last of them is under way
         self._of_others = 0                # messages in the other files
         _make(self.folder)
@@ -295,7 +306,7 @@ class BagWriter:
                 self.folder.rmdir()
             _refuse(path, error)
         try:
-            mcap = McapFile(file, CHUNK_SIZE, f'stickslip_sim {__version__}')
+            mcap = McapFile(file, self._packing.chunk_size, f'stickslip_sim {__version__}', self._packing.level)
             self._begin(mcap, part, len(whole))
             write_metadata(self.folder, self._information(whole or [part]))
         except OSError as error:

@@ -254,12 +254,12 @@ class Output(Protocol):
 class McapFile:
     """Writes an MCAP file into `output`; every method raises OSError when that refuses."""
 
-    def __init__(self, output: Output, chunk_size: int, library: str) -> None:
+    def __init__(self, output: Output, chunk_size: int, library: str, level: int) -> None:
         self.on_disk = 0                                     # messages in chunks that were written
         self._output, self._chunk_size = output, chunk_size
         self._crc = 0
         self._chunk = ChunkUnderWay()
-        self._compressor = zstandard.ZstdCompressor()
+        self._compressor = zstandard.ZstdCompressor(level)
         self._summary: dict[Opcode, RecordBuilder] = {
             kind: RecordBuilder() for kind in (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.CHUNK_INDEX,
                                                Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX)}

@@ -15,7 +15,8 @@ import numpy as np
 from ..core.errors import InputError, RecordingError, suggestion
 from ..figures.control import MeasuredFigure, Measuring, MotionBlock, MotionSpan, no_sample_in, positions_of_targets
 from ..figures.positioning import PositionFigures
-from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, column_of
+from ..inputs.csv_table import CsvTable, column_of
+from ..inputs.units import LENGTHS, TIMES
 from ..runs import Run
 from ..scene import Parameter
 from ..scene.load import named, read_text

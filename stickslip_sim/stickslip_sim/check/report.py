@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from ..core.errors import InputError
+from ..core.errors import InputError, check_kind
 from ..core.paths import check_picture_name
 from ..core.types import EventKind
 from ..figures.catalogue import OF_A_CYCLE, head_of, label_of, unit_of
@@ -342,6 +342,7 @@ def plot_runs(runs: Mapping[str, Run], *paths: Path | str, limits: Limits | str 
     drive.  Limits that hold at each instant are drawn as lines.  Without a `window` (begin and end, s) that of the
     moves is shown; returns it.  Raises InputError.
     """
+    check_kind('runs', runs, Mapping, 'runs by their names', 'for example {"one": run}')
     for path in paths:
         check_picture_name('path', str(path))
     if not 1 <= len(runs) <= _MOST_BESIDE:

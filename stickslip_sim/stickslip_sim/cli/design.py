@@ -4,6 +4,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -32,24 +33,20 @@ from .files import FOLDER, new_folder, progress_bar, say_written, show
 @click.option('--out', type=FOLDER, metavar='FOLDER',
               help='New folder for the scene that runs it, and one page.')
 @scene_changes('Change a parameter of the scene.')
-def design(scene: str, parameters: str, duration: float, speeds: str | None, travel: float, rate: float,
-           resolution: float, noise: float, force_noise: float | None, known: float, scatter: float, criterion: str,
-           out: str | None, changes: SceneChanges) -> None:
+def design(scene: str, parameters: str, speeds: str | None, out: str | None, changes: SceneChanges, **wishes: Any
+           ) -> None:
     """Propose the feed whose run would narrow parameters of a scene most: constant, steps, ramps, start-stop, sine, ...
 
     docs/sensitivities.md says how they are ranked.
     """
-    from ..sensitivity.experiments import Wishes, default_speeds, designed, speeds_of
-    from ..sensitivity.information import Sensors
+    from ..sensitivity import experiments
     from ..sensitivity.report import EXPERIMENT_PAGE, EXPERIMENT_SCENE, design_report, write_design
 
     loaded = changes.load(scene)
-    names = tuple(name.strip() for name in parameters.split(','))
-    between = default_speeds(loaded) if speeds is None else speeds_of(speeds)
-    wishes = Wishes(names, duration, between, Sensors(rate, resolution, noise, force_noise), known, scatter, travel,
-                    criterion)
+    between = None if speeds is None else experiments.speeds_of(speeds)
     with progress_bar('designing') as progress:
-        found = designed(loaded, wishes, progress)
+        found = experiments.design(loaded, [name.strip() for name in parameters.split(',')], speeds=between,
+                                   progress=progress, **wishes)
     show(design_report(found))
     if out is not None:
         with new_folder('--out', out) as folder:

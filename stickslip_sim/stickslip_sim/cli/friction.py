@@ -1,72 +1,108 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""`stickslip friction`: a measured friction curve, the laws that fit it, and the scene with the best."""
+"""`stickslip friction`: the friction curve of a run or a file, the laws that fit it, and the scene with the best."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from .files import check_distinct, check_file, check_picture, draw, say_written, write_text
+from . import completion
+from .arguments import recorded_run, verb
+from .files import FILE, PICTURE, SCENE_FILE, draw, say_written, write_text
+
+if TYPE_CHECKING:
+    from ..identification.curve.measured_curve import FrictionCurve, Units
+    from ..scene import Scene
 
 _LAWS = ('best', 'table', 'gaussian', 'stribeck', 'exponential', 'hyperbolic', 'points')
+_OF_A_FILE = {'speed_unit': '--speed-unit', 'force_unit': '--force-unit', 'lead': '--lead', 'rated': '--rated',
+              'meant': '--meant'}
+_OF_A_RUN = {'mass': '--mass', 'slowest': '--slowest', 'csv': '--csv'}
 
 
-@click.command(short_help='Fit friction laws to a measured curve; write the scene.')
-@click.argument('curve', metavar='CURVE.csv')
-@click.option('--speed-unit', required=True, metavar='UNIT', help='Of the first column: m/s, mm/s, um/s, m/min, ...')
-@click.option('--force-unit', metavar='UNIT', help='The second column is a force: N, kN, mN or lbf.')
-@click.option('--normal-force', type=float, metavar='N', help='The normal force under which it was measured, N.')
-@click.option('--direction', type=click.Choice(('both', 'forward', 'backward')), default='both', show_default=True,
-              help='Which points to fit; backward ones have a negative speed.')
+@verb(short_help='Fit friction laws to a measured run or curve; write the scene.')
+@click.argument('source', metavar='RUN|CURVE.csv', shell_complete=completion.complete_folders)
+@click.option('--mass', type=float, metavar='KG', help='Of a run: what the force accelerates [default: as --scene].')
+@click.option('--slowest', type=float, metavar='V', help='Of a run: slower is no motion, m/s [default: as of import].')
+@click.option('--csv', type=FILE, metavar='FILE.csv', help='Of a run: write the curve, with quartiles and counts.')
+@click.option('--speed-unit', metavar='UNIT', help='Of the first column: m/s, mm/s, um/s, m/min, ...; rpm, rad/s.')
+@click.option('--force-unit', metavar='UNIT', help='The second column is a force: N, kN, mN or lbf; N m; %.')
+@click.option('--lead', metavar='"10 MM"', help='Way of a turn, which converts rpm, rad/s and N m.')
+@click.option('--rated', metavar='"2.4 N M"', help='Rated torque or force, which converts a force in %.')
+@click.option('--normal-force', type=float, metavar='N',
+              help='The normal force under which it was measured, N [default: that of --scene, or friction in N].')
+@click.option('--direction', type=click.Choice(('both', 'forward', 'backward', 'each')), default='both',
+              show_default=True, help='Which points to fit; backward ones have a negative speed; each: one by one.')
 @click.option('--backward', is_flag=True,
               help='Write it as the friction of motion backwards of --scene, which keeps its own forwards.')
 @click.option('--law', type=click.Choice(_LAWS), default=_LAWS[0], show_default=True,
               help='Which to write; points: the measured points as a table.')
 @click.option('--scene', metavar='SCENE', help="The axis that gets this friction [default: the paper's].")
 @click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
-@click.option('--out', metavar='SCENE.yaml', help='Write the scene.')
-@click.option('--plot', metavar='FILE.png', help='Draw points, laws and residuals (.png, .pdf or .svg).')
+@click.option('--out', type=SCENE_FILE, metavar='SCENE.yaml', help='Write the scene.')
+@click.option('--plot', type=PICTURE, metavar='FILE.png', help='Draw points, laws and residuals (.png, .pdf or .svg).')
 @click.option('--meant', multiple=True, type=click.Choice(('speed', 'friction')),
               help='Its highest value is meant, however unusual.')
-def friction(curve: str, speed_unit: str, force_unit: str | None, normal_force: float | None, direction: str,
-             backward: bool, law: str, scene: str | None, changes: tuple[str, ...], out: str | None, plot: str | None,
-             meant: tuple[str, ...]) -> None:
-    """Fit the friction laws of the engine to a measured curve: speed, then coefficient or force, in each line.
+def friction(source: str, normal_force: float | None, direction: str, backward: bool, law: str, scene: str | None,
+             changes: tuple[str, ...], out: str | None, plot: str | None, **given: Any) -> None:
+    """Fit the friction laws of the engine to a run, or to a measured curve: speed, then coefficient or force, a line.
 
-    The best is the one with the lowest AICc.  docs/friction_curve.md says more.
+    Of a run friction is its force less its inertia, in bins of the velocity.  The best law is the one with the lowest
+    AICc.  docs/friction_curve.md says more.
     """
-    _check(out, plot, scene, changes)
-    if backward and (scene is None or direction == 'forward'):
-        raise click.UsageError('--backward writes backward points into a scene: give --scene, no --direction forward.')
-    from ..identification.curve.measured_curve import load_curve, units_of
-    from ..identification.curve.report import fitted_curve
+    is_run = Path(source).is_dir() or Path(source).suffix == '.mcap'
+    others = {option for name, option in (_OF_A_FILE if is_run else _OF_A_RUN).items() if given[name]}
+    if others:
+        raise click.UsageError(f'{", ".join(sorted(others))}: not for a {"run" if is_run else "file"}.')
+    if out is None and (changes or scene is not None) and not is_run and not given['force_unit']:
+        raise click.UsageError('--scene and --set are for the scene: give --out SCENE.yaml too.')
+    if backward and (scene is None or direction not in ('both', 'backward')):
+        raise click.UsageError('--backward writes backward points into a scene: give --scene, no --direction.')
+    if plot is not None and direction == 'each':
+        raise click.UsageError('--plot draws one curve: give --direction both, forward or backward.')
+    from ..identification.curve.report import fitted_curves, scene_of_curves, scene_text_of
     from ..inputs import load_scene
     from ..scene import parse_override
 
-    units = units_of(speed_unit, force_unit, normal_force)
-    measured = load_curve(curve, units, 'backward' if backward else direction, meant)
-    found = fitted_curve(curve, measured, units, law)
-    made = None if out is None else found.scene(None if scene is None else load_scene(scene),
-                                                dict(map(parse_override, changes)), backward)
-    print('\n'.join(found.lines()))
-    draw(plot, found.draw)
+    of_run = {'axis.mass': given['mass']} if given['mass'] is not None else {}
+    overrides = {**(of_run if scene is None else {}), **dict(map(parse_override, changes))}
+    base = None if scene is None else load_scene(scene)
+    changed = None if scene is None else load_scene(scene, overrides)
+    if normal_force is None and changed is not None and (is_run or given['force_unit']):
+        normal_force = changed.axis.normal_force
+    curve, units, notes = (_of_run(source, normal_force, changed, **given) if is_run else
+                           _of_file(source, normal_force, **given))
+    found = fitted_curves(source, curve, units, 'backward' if backward else direction, law, notes,
+                          base if backward else None)
+    made = None if out is None else scene_of_curves(found, base, overrides, backward)
+    print('\n\n'.join('\n'.join(one.lines()) for one in found))
+    draw(plot, found[0].draw)
     if out is not None and made is not None:
-        write_text(out, [found.text(made, scene)])
-    say_written(out, plot)
+        write_text(out, [scene_text_of(found, made, scene)])
+    say_written(given['csv'], out, plot)
     if out is not None and made is not None:
-        print('\n'.join(found.next_lines(out, made, scene, changes)))
+        print('\n'.join(found[0].next_lines(out, made, scene, changes)))
 
 
-def _check(out: str | None, plot: str | None, scene: str | None, changes: tuple[str, ...]) -> None:
-    """Raise before the work begins when an output cannot be written or an option has no effect."""
-    from ..core.errors import InputError
+def _of_run(source: str, normal_force: float | None, scene: 'Scene | None', mass: float | None, slowest: float | None,
+            csv: str | None, **_: object) -> 'tuple[FrictionCurve, Units, tuple[str, ...]]':
+    from ..identification.run_friction import friction_curve
+    from .csv_tables import csv_lines
 
-    if out is None and (scene is not None or changes):
-        raise click.UsageError('--scene and --set are for the scene: give --out SCENE.yaml too.')
-    if plot is not None:
-        check_picture('--plot', plot)
-    if out is not None:
-        if Path(out).suffix not in ('.yaml', '.yml'):
-            raise InputError('--out', out, 'a file ending in .yaml or .yml', 'name it so')
-        check_file('--out', out)
-    check_distinct([(option, path) for option, path in (('--out', out), ('--plot', plot)) if path is not None])
+    found = friction_curve(recorded_run(source), mass, scene, slowest)
+    if csv is not None:
+        write_text(csv, csv_lines([found.columns]))
+    return found.curve(normal_force), found.units(normal_force), found.notes
+
+
+def _of_file(source: str, normal_force: float | None, speed_unit: str | None, force_unit: str | None,
+             lead: str | None, rated: str | None, meant: tuple[str, ...], **_: object
+             ) -> 'tuple[FrictionCurve, Units, tuple[str, ...]]':
+    from ..identification.curve.measured_curve import load_curve, units_of
+    from ..inputs.units import drive_units
+
+    if speed_unit is None:
+        raise click.UsageError('--speed-unit UNIT is needed: that of the first column of a file, as mm/s.')
+    units = units_of(speed_unit, force_unit, normal_force, drive_units(lead, rated))
+    return load_curve(source, units, meant), units, ()

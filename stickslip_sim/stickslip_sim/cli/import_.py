@@ -27,6 +27,7 @@ _ABOVE = 1.5    # of the noise: a threshold that it does not reach
 @click.option('--unit', multiple=True, metavar='position=mm,...',
               help='Units [default: of the headings, or SI], with a factor if need be: position="-0.05 um".')
 @click.option('--lead', metavar='"10 MM"', help='Way of a turn, which converts rpm, rad/s, deg and N m.')
+@click.option('--rated', metavar='"2.4 N M"', help='Rated torque or force, which converts a force in %.')
 @click.option('--stiffness', metavar='"600 N/MM"', help='The spring by whose force the slider is pulled: x = s - F/k.')
 @click.option('--feed', metavar='"2 MM/S"', help='Velocity of the driven end of that spring.')
 @click.option('--from', 'begin', type=float, default=-math.inf, metavar='S', help='Time of the file to begin at.')
@@ -38,8 +39,9 @@ _ABOVE = 1.5    # of the noise: a threshold that it does not reach
               help='A slip is faster than this, m/s, and at its peak than 5 times it [default: 5 % of the highest].')
 @click.option('--meant', multiple=True, metavar='QUANTITY', help='It is meant as it was read, however fast or far.')
 @click.option('--out', type=FOLDER, required=True, metavar='RUN_FOLDER', help='New folder of the run.')
-def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], lead: str | None, stiffness: str | None,
-            feed: str | None, stick_velocity: float | None, meant: tuple[str, ...], out: str, **rows: Any) -> None:
+def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], lead: str | None, rated: str | None,
+            stiffness: str | None, feed: str | None, stick_velocity: float | None, meant: tuple[str, ...], out: str,
+            **rows: Any) -> None:
     """Make a run folder of what was measured, for identify, compare, plot, export and check.
 
     There is nothing else in it.  The quantities are time, position, velocity and acceleration of the slider,
@@ -48,21 +50,21 @@ def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], lead: st
     """
     from ..core.errors import InputError
     from ..figures.cycles import headline
-    from ..inputs.csv_table import SPEEDS, STIFFNESSES, Rows
-    from ..inputs.measurement import COLUMNS_OPTION, UNIT_OPTION, Measurement, check_plausible_motion, pairs_of, stated
-    from ..recording import MeasuredRun, read_run
+    from ..inputs.csv_table import Rows
+    from ..inputs.measurement import COLUMNS_OPTION, UNIT_OPTION, Measurement, check_plausible_motion, pairs_of
+    from ..inputs.units import SPEEDS, STIFFNESSES, stated
     from ..report.model import NOTE, Section, Sentence
 
     if stick_velocity is not None and not 0.0 < stick_velocity < 1e6:
         raise InputError('--stick-velocity', stick_velocity, '> 0 and < 1e6 m/s', '0.1 mm/s is 1e-4')
     named = pairs_of(COLUMNS_OPTION, columns)
     units = pairs_of(UNIT_OPTION, unit) if unit else {}
-    measured = Measurement.from_file(data, named, units, lead, Rows(**rows))
+    measured = Measurement.from_file(data, named, units, lead, Rows(**rows), rated)
     if stiffness or feed:
         measured = measured.with_spring(stated('--stiffness', stiffness or '', STIFFNESSES),
                                         None if feed is None else stated('--feed', feed, SPEEDS))
     check_plausible_motion(measured, meant)
-    given = {'file': Path(data).name, 'columns': _joined(named), 'units': _joined(units), 'lead': lead,
+    given = {'file': Path(data).name, 'columns': _joined(named), 'units': _joined(units), 'lead': lead, 'rated': rated,
              'stick_velocity': None if stick_velocity is None else repr(stick_velocity)}
     title = f'{len(measured.times)} rows, {measured.times[-1] - measured.times[0]:.6g} s: {", ".join(measured.columns)}'
     with new_folder('--out', out) as folder:
@@ -71,9 +73,7 @@ def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], lead: st
         for path in inner.iterdir():
             path.rename(folder / path.name)
         inner.rmdir()
-    del measured    # of millions of rows
-    run = read_run(out)
-    assert isinstance(run, MeasuredRun)
+    run = measured.as_run(out)
     show([Section(f'{run.name}: {title}',
                   [headline(run.summary), *(Sentence(note, NOTE) for note in (*run.notes, *_of_noise(run)))])])
     say_written(out)

@@ -21,7 +21,8 @@ from ..core.time_grid import Instants, decimal, instants
 from ..core.types import Event, Instant, Mode, Progress, Sample, tuple_of
 from ..figures.cycles import summary
 from ..inputs import SceneOrName, scene_of
-from ..inputs.csv_table import LENGTHS, TIMES, CsvTable, column_of
+from ..inputs.csv_table import CsvTable, column_of
+from ..inputs.units import LENGTHS, TIMES
 from ..realtime.commands import Watchdog
 from ..recording.messages import slider_joint
 from ..recording.offline_bag import NO_ORDERS, Orders, write_steps
@@ -55,7 +56,7 @@ class LoopRecord:
         self.rig_events += [(step, event) for event in rig_events]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ClosedLoopRun(SimulatedRun):
     """A run whose drive followed a controller.
 

@@ -47,6 +47,12 @@ class InputError(StickslipError):
         self.fix = fix
 
 
+def check_kind(name: str, given: object, kind: Any, allowed: str, fix: str) -> None:
+    """Raise InputError on an argument of Python of another kind."""
+    if not isinstance(given, kind):
+        raise InputError(name, type(given).__name__, allowed, fix)
+
+
 class RecordingError(StickslipError):
     """A run folder cannot be written or read."""
 

@@ -8,12 +8,14 @@ figures are as exact as the events.
 
 import math
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from ..core.types import Event, EventKind, Mode
 from ..friction import StaticLawKind
-from ..report.quantity import quantity
+from ..report.html import html_of
+from ..report.model import Part, Table, facts
+from ..report.quantity import counted, quantity
 from ..scene import Scene
 from ..solvers.exact.many_axes import LEAST_STICK, SETTLED
 from .catalogue import OF_A_CYCLE, head_of, unit_of
@@ -81,6 +83,12 @@ class Summary(NamedTuple):
     mean: Cycle | None           # over the last `averaged` cycles
     averaged: int
     touches: int                 # cycles that only touch rest: see `_touches`
+
+    def __repr__(self) -> str:
+        return f'<Summary of {self.motion}: {headline(self)}>'
+
+    def _repr_html_(self) -> str:
+        return html_of(summary_report(self))
 
 
 def cycle_figures(events: Sequence[Event]) -> list[Cycle]:
@@ -277,6 +285,7 @@ def _is_settled(cycles: Sequence[Cycle]) -> bool:
 # Figures of a run in words: numbers with their units, and a run in one line.
 
 _IN_A_LINE = 6   # of OF_A_CYCLE
+LABEL, _NUMBER = 21, 13    # columns
 
 
 def headline(figures: Summary) -> str:
@@ -289,6 +298,25 @@ def headline(figures: Summary) -> str:
     shown = (f'{head_of(name)} {quantity(getattr(cycle, name), unit_of(name), 4)}' for name in OF_A_CYCLE[:_IN_A_LINE]
              if not math.isnan(getattr(cycle, name)))   # not measured
     return ('' if figures.settled else 'last cycle: ') + ' · '.join(shown)
+
+
+def summary_report(figures: Summary) -> Iterator[Part]:
+    """Yield the events by kind and the kind of motion, then the figures of the cycles, if there are any."""
+    counts = ', '.join(f'{n} {kind.name.lower()}' for kind, n in figures.events.items() if n and kind != EventKind.KNOT)
+    said = [('events', counts or 'none'), ('motion', _motion(figures)), ('note', touch_note(figures))]
+    yield facts([(label, text) for label, text in said if text], LABEL)
+    if figures.last is not None and figures.mean is not None:
+        yield Table(('', 'last cycle', f'mean of {figures.averaged}'),
+                    [(head_of(name), *(quantity(getattr(cycle, name), unit_of(name))
+                                       for cycle in (figures.last, figures.mean)))
+                     for name in OF_A_CYCLE], least=(LABEL + 1, _NUMBER, _NUMBER))
+
+
+def _motion(figures: Summary) -> str:
+    text = f'{figures.motion}, {100.0 * figures.stick_share:.4g} % of the time in stick'
+    if figures.cycles:
+        text += f'; {counted(figures.cycles, "cycle")}, {"settled" if figures.settled else "not settled"}'
+    return text
 
 
 def touch_note(figures: Summary) -> str:

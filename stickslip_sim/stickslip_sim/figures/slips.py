@@ -83,7 +83,8 @@ def stretches_of(velocity: Numbers, threshold: float | Numbers) -> Iterator[Slip
     edges = [0, *(np.flatnonzero(np.diff(ways)) + 1).tolist(), len(ways)]
     for first, end in pairwise(edges):
         if ways[first]:
-            yield SlipRows(first, end, first + int(np.abs(velocity[first:end]).argmax()), int(ways[first]))
+            part, way = velocity[first:end], int(ways[first])
+            yield SlipRows(first, end, first + int(part.argmax() if way > 0 else part.argmin()), way)
 
 
 def events_of_slips(samples: Columns, threshold: float) -> list[Event]:

@@ -6,6 +6,7 @@ What is in here, from the top floor down; each imports only from the floors belo
 
     identify           the verb: from a run to what was found in it, with intervals, tests and slips
     results            the folder of results
+    run_friction       the friction curve out of a run
     other_laws         the run fitted with other laws, and the criterion that compares them
     wrong_model        the best numbers of a model that does not follow the run
     report             what was found, as lines, page and values

@@ -3,9 +3,12 @@
 """What an identification found: the scene that reproduces a measured run, and how well each of its numbers is known."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ..core.arrays import Numbers
+from ..report.html import Shown
+from ..report.model import Part, Table
 from ..scene import Scene
 
 FOUND, AT_BOUND, NOT_IDENTIFIABLE, VOID = 'found', 'at a bound', 'not identifiable', 'void'
@@ -140,8 +143,8 @@ class SlipFit:
     fitted_break_away_force: float
 
 
-@dataclass(frozen=True)
-class Identification:
+@dataclass(frozen=True, repr=False)
+class Identification(Shown):
     """A scene identified from a run.
 
     `start` is the scene that was given, `scene` the one with the estimates in it; sensor offsets and scales are among
@@ -172,6 +175,15 @@ class Identification:
     shift: float = 0.0
     measured_inputs: tuple[str, ...] = ()
     restarts: tuple[float, ...] = ()
+
+    def _shown(self) -> Iterator[Part]:
+        yield (f'Identification of {self.scene.name}: {len(self.estimates)} parameters, '
+               + ('no test rejects the model' if self.fits else 'the model does not fit'))
+        yield Table(('', 'start', 'found', '95 % interval', ''), [
+            (one.name, f'{one.start:.6g}', f'{one.value:.6g}', ' to '.join(f'{end:.6g}' for end in one.interval),
+             one.kind) for one in self.estimates], texts=(0, 4))
+        yield from [one.statement for one in self.misfits] + [one.statement for one in self.combinations]
+        yield from self.notes
 
     @property
     def fits(self) -> bool:

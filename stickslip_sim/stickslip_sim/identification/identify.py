@@ -14,7 +14,7 @@ import numpy as np
 from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..inputs import SceneOrName, scene_of
-from ..recording import read_run
+from ..recording import run_of
 from ..runs import Run
 from ..scene import Scene, changed
 from .axis_model import AxisModel
@@ -249,7 +249,7 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     say = progress or (lambda stage, share: None)
     scene = scene_of(start)
     parameters = free_parameters(scene, free)
-    measurement = readings_of(_run_of(run), scene, resolutions or {})
+    measurement = readings_of(run_of(run), scene, resolutions or {})
     motions = motions_of(track_of(measurement, measurement.drive or scene.drive))
     check_parameters(parameters, measurement)
     check_data(parameters, measurement, motions, scene)
@@ -265,13 +265,3 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     model.take_tolerance(ends[0].tolerance)
     identified = identification_of(problem, scene, best_of_slips(problem, along_the_run(problem, ends)), began)
     return with_laws(identified, problem, workers, keeper, say) if laws else identified
-
-
-def _run_of(given: Run | str | os.PathLike[str]) -> Run:
-    """Return a run, or the one in a folder; raises InputError on what is neither."""
-    if isinstance(given, str | os.PathLike):
-        return read_run(os.fspath(given))
-    if not hasattr(given, 'samples'):
-        raise InputError('run', type(given).__name__, 'a run, or the path of its folder',
-                         'make one of columns first: stickslip import')
-    return given

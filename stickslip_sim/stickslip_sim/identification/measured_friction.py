@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..axis import Friction
+from ..axis import Axis, Friction
 from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..figures.slips import SLIP_TIMES, SlipRows, slips_of
@@ -27,7 +27,7 @@ from .identified import FOUND, Estimate, Identification, moved
 from .identified_scene import OF_SENSORS
 
 _STRETCH = 0.1      # of a slip
-_FEWEST = 7         # rows of a stretch
+FEWEST_ROWS = 7     # of a stretch
 _DEGREE = 3
 _SLOWEST = 0.05     # of the highest speed: where a run states no threshold, as of an imported one
 _BINS = 24
@@ -55,17 +55,17 @@ NOTHING = FrictionPoints(np.empty(0), np.empty(0))
 
 def friction_points(run: Run, found: Identification, direction: float = 0.0) -> FrictionPoints:
     """Return the friction at each reading within a slip, of both directions (0) or one; nothing without a force."""
-    times, drawn = _even(corrected(run, found))
-    if len(times) < 2 * _FEWEST:
+    times, drawn = even(corrected(run, found))
+    if len(times) < 2 * FEWEST_ROWS:
         return NOTHING
     period = times[1] - times[0]
-    rough = _smooth(drawn['position'], _FEWEST, 1) / period if 'position' in drawn else drawn['velocity']
-    slips = list(slips_of(rough, _threshold(run, rough)))
+    rough = motion(drawn, FEWEST_ROWS, period)[0] if 'position' in drawn else drawn['velocity']
+    slips = list(slips_of(rough, threshold_of(run, rough)))
     if not slips:
         return NOTHING
-    window = _window(slips)
-    velocity, acceleration = _motion(drawn, window, period)
-    force = _force(drawn, found, velocity, acceleration, window, period)
+    window = window_of(slips)
+    velocity, acceleration = motion(drawn, window, period)
+    force = friction_force(drawn, found.scene.axis, velocity, acceleration, window, period)
     if force is None:
         return NOTHING
     rows = np.concatenate([np.arange(slip.first + window // 2, slip.end - window // 2) for slip in slips])
@@ -107,7 +107,7 @@ def corrected(run: Run, found: Identification) -> dict[str, Numbers]:
     return columns
 
 
-def _even(columns: Mapping[str, Numbers]) -> tuple[Numbers, dict[str, Numbers]]:
+def even(columns: Mapping[str, Numbers]) -> tuple[Numbers, dict[str, Numbers]]:
     """Return the columns at even times, as far apart as the readings are in the median."""
     times = columns['time']
     period = float(np.median(np.diff(times)))
@@ -117,29 +117,29 @@ def _even(columns: Mapping[str, Numbers]) -> tuple[Numbers, dict[str, Numbers]]:
                   if name != 'time'}
 
 
-def _threshold(run: Run, velocity: Numbers) -> float:
+def threshold_of(run: Run, velocity: Numbers) -> float:
+    """Return the speed that a slip passes, m/s: that of the run, or a share of the highest."""
     stated = getattr(run, 'stick_velocity', None)
     highest = float(np.abs(velocity).max())
     return min(_SLOWEST * highest if stated is None else float(stated), highest / (2.0 * SLIP_TIMES))
 
 
-def _window(slips: list[SlipRows]) -> int:
+def window_of(slips: list[SlipRows]) -> int:
     """Return how many rows a stretch has: an odd number."""
     rows = float(np.median([slip.end - slip.first for slip in slips]))
-    return max(_FEWEST, 2 * int(_STRETCH * rows / 2.0) + 1)
+    return max(FEWEST_ROWS, 2 * int(_STRETCH * rows / 2.0) + 1)
 
 
-def _motion(drawn: Mapping[str, Numbers], window: int, period: float) -> tuple[Numbers, Numbers]:
+def motion(drawn: Mapping[str, Numbers], window: int, period: float) -> tuple[Numbers, Numbers]:
     """Return speed and acceleration, those of a sensor of their own where there is one."""
     name, first = ('position', 1) if 'position' in drawn else ('velocity', 0)
     return (_smooth(drawn[name], window, first) / period**first,
             _smooth(drawn[name], window, first + 1) / period**(first + 1))
 
 
-def _force(drawn: Mapping[str, Numbers], found: Identification, velocity: Numbers, acceleration: Numbers, window: int,
-           period: float) -> Numbers | None:
+def friction_force(drawn: Mapping[str, Numbers], axis: Axis, velocity: Numbers, acceleration: Numbers, window: int,
+                   period: float) -> Numbers | None:
     """Return the friction force, positive against a motion along +x; None where no force is known."""
-    axis = found.scene.axis
     if 'friction_force' in drawn:
         return drawn['friction_force']
     if 'drive_force' in drawn:

@@ -9,155 +9,20 @@ that it refuses is gone through line by line, to say where.
 
 import codecs
 import csv
-import difflib
 import math
-import re
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError, paths_beside, suggestion
-
-# Units of measured data, and their numbers in SI, rounded once.
-
-SPEEDS: Mapping[str, Fraction] = {
-    'm/s': Fraction(1), 'cm/s': Fraction(1, 100), 'mm/s': Fraction(1, 1000), 'um/s': Fraction(1, 10**6),
-    'm/min': Fraction(1, 60), 'mm/min': Fraction(1, 60_000), 'in/s': Fraction(254, 10**4),
-    'in/min': Fraction(254, 60 * 10**4),
-}
-LENGTHS: Mapping[str, Fraction] = {'m': Fraction(1), 'mm': Fraction(1, 1000), 'um': Fraction(1, 10**6),
-                                   'nm': Fraction(1, 10**9), 'cm': Fraction(1, 100), 'in': Fraction(254, 10**4)}
-ACCELERATIONS: Mapping[str, Fraction] = {'m/s2': Fraction(1), 'mm/s2': Fraction(1, 1000),
-                                         'g': Fraction(980665, 10**5)}
-TIMES: Mapping[str, Fraction] = {'s': Fraction(1), 'ms': Fraction(1, 1000), 'us': Fraction(1, 10**6),
-                                 'ns': Fraction(1, 10**9), 'min': Fraction(60)}
-FORCES: Mapping[str, Fraction] = {'N': Fraction(1), 'mN': Fraction(1, 1000), 'kN': Fraction(1000),
-                                  'lbf': Fraction(44482216152605, 10**13)}
-STIFFNESSES: Mapping[str, Fraction] = {'N/m': Fraction(1), 'kN/m': Fraction(1000), 'N/mm': Fraction(1000),
-                                       'kN/mm': Fraction(10**6), 'N/um': Fraction(10**6), 'MN/m': Fraction(10**6)}
-
-# What turns, by the SI unit of what it moves; a lead (m a turn) converts it.
-_TURN = Fraction(2.0 * math.pi)
-_TURNS = {'rad': 1 / _TURN, 'mrad': 1 / (1000 * _TURN), 'deg': Fraction(1, 360), 'rev': Fraction(1)}
-_ROTARY: Mapping[str, Mapping[str, Fraction]] = {
-    'm': _TURNS, 'm/s': {**{f'{unit}/s': turns for unit, turns in _TURNS.items()}, 'rpm': Fraction(1, 60),
-                         '1/min': Fraction(1, 60)},
-    'm/s2': {f'{unit}/s2': turns for unit, turns in _TURNS.items()},
-    'N': {'N m': _TURN, 'Nm': _TURN, 'mN m': _TURN / 1000, 'mNm': _TURN / 1000},
-}
-
-
-def with_lead(units: Mapping[str, Fraction], lead: Fraction) -> Mapping[str, Fraction]:
-    """Return units, and those of a screw with this lead (m a turn) without friction: rpm, rad/s, N m."""
-    si = next(iter(units))
-    return {**units, **{unit: turns / lead if si == 'N' else turns * lead
-                        for unit, turns in _ROTARY.get(si, {}).items()}}
-
-
-def unit_of(option: str, word: str, units: Mapping[str, Fraction]) -> str:
-    """Return a unit as it is spelled here; raises InputError on one that is not known."""
-    found = word.strip().replace('µ', 'u').replace('μ', 'u')
-    if found in units:
-        return found
-    close = difflib.get_close_matches(found, units, 1)
-    fix = f'did you mean {close[0]}?' if close else 'convert the column to one of them'
-    raise InputError(option, word, 'one of ' + ', '.join(units), _rotary_fix(found, units) or fix)
-
-
-def _rotary_fix(word: str, units: Mapping[str, Fraction]) -> str:
-    return 'it is of a turn: import takes --lead, as "10 mm" a turn' if unit_in(word, _ROTARY.get(
-        next(iter(units)), {})) else ''
-
-
-def named_unit(heading: str, units: Mapping[str, Fraction]) -> str | None:
-    """Return the unit in the heading of a column, as in "speed [mm/s]" or "speed_mm_per_s"; None without one."""
-    words = heading.replace('µ', 'u').replace('μ', 'u').replace('_per_', '/')
-    for unit in sorted(units, key=len, reverse=True):
-        if re.search(rf'(?<![A-Za-z/]){re.escape(unit)}(?![A-Za-z/])', words):
-            return unit
-    return None
-
-
-def in_si(value: float, unit: Fraction) -> float:
-    """Return a finite number of a unit in SI: 0.5 mm/s is 0.0005 m/s to the last bit."""
-    return float(Fraction(repr(value)) * unit)
-
-
-def all_in_si(values: NDArray[np.float64], unit: Fraction) -> NDArray[np.float64]:
-    """Return finite numbers of a unit in SI, each as `in_si` does; of very many, to the last bit but one."""
-    if unit == 1:
-        return values
-    if len(values) > _MOST_EXACT:
-        scaled: Numbers = values * float(unit.numerator) / float(unit.denominator)
-        return scaled
-    digits = len(str(unit.denominator)) - 1
-    if unit == Fraction(1, 10**digits):
-        return np.array([float(Decimal(repr(value)).scaleb(-digits)) for value in values.tolist()])
-    return np.array([in_si(value, unit) for value in values.tolist()])
-
+from .units import Wanted, all_in_si, in_unit_of, named_unit, unit_in, wanted_column
 
 MOST_BYTES = 256 << 20
-_MOST_EXACT = 200_000
-_SCALED = re.compile(r'([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,2})?)\s*\*?\s*(.+)')   # 0.05 um
-_LARGEST = 1e15    # factor
-
-
-class Wanted(NamedTuple):
-    """A column: its `name` and `unit`, the options that gave them, and the `units` that it may have.
-
-    A number in it stands for so many units as `factor` says.  `is_stated`: the unit is not that of the heading;
-    `is_default`: nobody said so, it is SI.
-    """
-
-    name_option: str
-    name: str
-    unit_option: str
-    unit: str
-    units: Mapping[str, Fraction]
-    factor: Fraction = Fraction(1)
-    is_stated: bool = True
-    is_default: bool = False
-
-    @property
-    def in_si(self) -> Fraction:
-        """What a 1 in the column is in SI; raises InputError on an unknown unit."""
-        return self.factor * self.units[unit_of(self.unit_option, self.unit, self.units)]
-
-
-def wanted_column(name_option: str, name: str, unit_option: str, unit: str | None, units: Mapping[str, Fraction],
-                  takes_heading: bool = False) -> Wanted:
-    """Return a column that is wanted; its unit (None: SI, the first) may have a factor before it: `0.05 um`, `-1 mm`.
-
-    `takes_heading`: where none is stated it is that of the heading.  Raises InputError on a factor that is none.
-    """
-    scaled = None if unit is None else _SCALED.fullmatch(unit.strip())
-    factor = Fraction(scaled[1]) if scaled else Fraction(1)
-    if factor == 0 or abs(factor) > _LARGEST:
-        raise InputError(unit_option, unit, 'a unit, or one with a factor that is not 0', 'for example 35.15 N')
-    word = scaled[2] if scaled else unit or next(iter(units))
-    return Wanted(name_option, name, unit_option, word, units, factor, not takes_heading or unit is not None,
-                  unit is None)
-
-
-def column_of(path: Path, names: Sequence[str], units: Mapping[str, Fraction], option: str, unit: str | None = None,
-              unit_option: str = '') -> Wanted:
-    """Return the column of a file that has the first of some names; its unit (None) is that in its heading, or SI.
-
-    Raises InputError where the heading has another one.
-    """
-    found = next((cell for cell in heading_of(path) if cell.split('[')[0].split('(')[0].strip() in names), names[0])
-    unit = unit or named_unit(found, units)
-    if unit is None and any(bracket in found for bracket in '[('):
-        raise InputError(option, found, f'a heading with one of the units {", ".join(units)}',
-                         'correct the unit, or leave it out for SI')
-    return wanted_column(option, found, unit_option or option, unit, units)
 
 
 class Rows(NamedTuple):
@@ -388,7 +253,14 @@ class CsvTable(Table):
             raise InputError(f'{self._name} line {line}', text, f'{max(self._used) + 1} columns or more',
                              'complete it, or leave it out')
         raise InputError(f'{self._name} line {line}', cells[at], 'a finite number '
-                         f'in column {at + 1}, {self._heading(at)}'.rstrip(', '), 'correct it, or leave the line out')
+                         f'in column {at + 1}, {self._heading(at)}'.rstrip(', '), _fix_of(cells[at]))
+
+
+def _fix_of(cell: str) -> str:
+    if ':' in cell:
+        return 'a time of day: count rows instead, time=row with --unit time="1 ms"'
+    return ('export it without points between thousands' if cell.count('.') > 1 else
+            'correct it, or leave the line out (--drop-bad-rows)')
 
 
 class ArrayTable(Table):
@@ -443,6 +315,20 @@ def heading_of(path: Path) -> list[str]:
         return []
     mark = next((mark for mark in ';\t,' if mark in line), None)
     return [cell.strip().strip('"') for cell in line.split(mark)]
+
+
+def column_of(path: Path, names: Sequence[str], units: Mapping[str, Fraction], option: str, unit: str | None = None,
+              unit_option: str = '') -> Wanted:
+    """Return the column of a file that has the first of some names; its unit (None) is that in its heading, or SI.
+
+    Raises InputError where the heading has another one.
+    """
+    found = next((cell for cell in heading_of(path) if cell.split('[')[0].split('(')[0].strip() in names), names[0])
+    unit = unit or named_unit(found, units)
+    if unit is None and any(bracket in found for bracket in '[('):
+        raise InputError(option, found, f'a heading with one of the units {", ".join(units)}',
+                         'correct the unit, or leave it out for SI')
+    return wanted_column(option, found, unit_option or option, unit, units)
 
 
 def _encoding(option: str, path: Path, most_bytes: int) -> str:
@@ -502,49 +388,6 @@ def _matches(names: Sequence[str], cells: Sequence[str]) -> int:
     found = {name for cell in cells for name in _names_in(cell)}
     return sum(name in found for name in names)
 
-
-# The unit that a heading says, or a cell of a row of units below it.
-
-_IN_BRACKETS = re.compile(r'[\[(]\s*([^\[\]()]+?)\s*[\])]$')
-_ALIKE = {'µ': 'u', 'μ': 'u', '²': '2', '^2': '2', '·': ' ', '_per_': '/', 'seconds': 's', 'second': 's', 'sec': 's'}
-
-
-def unit_in(heading: str, units: Mapping[str, Fraction]) -> str | None:
-    """Return the unit that ends a heading, as in "speed [mm/s]", "speed_mm_per_s" or "speed mm/s"; None without one."""
-    words = heading.strip()
-    for word, unit in _ALIKE.items():
-        words = words.replace(word, unit)
-    found = _IN_BRACKETS.search(words)
-    endings = [found[1]] if found else [words, re.split(r'[ _]', words)[-1]]
-    return next((unit for unit in endings if unit in units and (found or unit != 'in')), None)
-
-
-def in_unit_of(column: Wanted, heading: str, below: Sequence[str]) -> Wanted:
-    """Return a column in the unit of its heading, or of the cells `below`, where none was stated.
-
-    Raises InputError where another one was, or where it is unknown.
-    """
-    if column.is_stated:
-        unit = None if heading == column.unit else named_unit(heading, column.units) or next(
-            (unit for cell in below if (unit := unit_in(cell, column.units))), None)
-        if unit is not None and unit != unit_of(column.unit_option, column.unit, column.units):
-            raise InputError(column.unit_option, column.unit, f'{unit}, as the heading says: {heading}',
-                             f'give {column.unit_option} as {unit}, or correct the heading')
-        unknown = _IN_BRACKETS.search(heading) if column.is_default and column.name != heading else None
-        if unknown and not named_unit(heading, column.units):
-            raise InputError(column.unit_option, unknown[1], 'one of ' + ', '.join(column.units),
-                             f'{heading} has another one: state it, or how much a 1 is, as "35.15 {column.unit}"')
-        return column
-    said = [cell for cell in ('' if heading in column.units else heading, *below) if unit_in(cell, column.units)]
-    if said:
-        return column._replace(unit=unit_in(said[-1], column.units) or column.unit)
-    other = next((cell for cell in (heading[heading.find('['):] if '[' in heading else '', *below)
-                  if cell.strip('[] -1')), None)
-    if other is not None and not other.strip('[]').isdecimal():
-        raise InputError(column.unit_option, other, 'one of ' + ', '.join(column.units),
-                         _rotary_fix(other, column.units)
-                         or f'state how much a 1 in {column.name} is: {column.unit_option} "35.15 {column.unit}"')
-    return column
 
 
 def _number(cell: str) -> float | None:

@@ -15,24 +15,14 @@ import numpy as np
 
 from ..core.arrays import Numbers, has_parquet
 from ..core.errors import InputError
-from ..recording import Bag, RecordedMessage, open_bag, write_measured
+from ..recording import Bag, MeasuredRun, RecordedMessage, open_bag, write_measured
+from ..report.html import Shown
+from ..report.model import Part, Table
+from ..report.quantity import quantity
 from ..scene.plausible import FASTEST, MEANT, Plausible, check_number
-from .csv_table import (
-    ACCELERATIONS,
-    ALL,
-    FORCES,
-    LENGTHS,
-    SPEEDS,
-    TIMES,
-    ArrayTable,
-    CsvTable,
-    Rows,
-    Table,
-    Wanted,
-    all_in_si,
-    wanted_column,
-    with_lead,
-)
+from . import csv_table
+from .csv_table import ALL, ArrayTable, CsvTable, Rows
+from .units import ACCELERATIONS, FORCES, LENGTHS, SPEEDS, TIMES, Wanted, all_in_si, drive_units, wanted_column
 
 QUANTITIES: Mapping[str, Mapping[str, Fraction]] = {
     'time': TIMES, 'position': LENGTHS, 'velocity': SPEEDS, 'acceleration': ACCELERATIONS, 'drive_position': LENGTHS,
@@ -62,7 +52,7 @@ def pairs_of(option: str, words: Sequence[str]) -> dict[str, str]:
 
 
 @dataclass(frozen=True, repr=False)
-class Measurement:
+class Measurement(Shown):
     """What was measured: `columns` by quantity over `times` (s, rising), in SI; `remarks` say what was done to them.
 
     The quantities are position, velocity and acceleration of the slider (m, m/s, m/s2), drive_position,
@@ -74,49 +64,53 @@ class Measurement:
     remarks: tuple[str, ...] = ()
     facts: Mapping[str, str] = field(default_factory=dict)
 
-    def __repr__(self) -> str:
-        return (f'<Measurement: {len(self.times)} rows, {self.times[0]:.6g} to {self.times[-1]:.6g} s: '
-                f'{", ".join(self.columns)}>')
+    def _shown(self) -> Iterator[Part]:
+        yield (f'Measurement: {len(self.times)} rows, {self.times[0]:.6g} to {self.times[-1]:.6g} s: '
+               f'{", ".join(self.columns)}')
+        yield Table(('', 'least', 'most'), [(name, *(quantity(end, next(iter(QUANTITIES[name])), 4) for end in (
+            values.min(), values.max()))) for name, values in self.columns.items()])
+        yield from self.remarks
 
     @classmethod
     def from_arrays(cls, *, time: Any, units: Mapping[str, str] | None = None, lead: str | None = None,
-                    **quantities: Any) -> 'Measurement':
+                    rated: str | None = None, **quantities: Any) -> 'Measurement':
         """Return a measurement of arrays (n,), as `from_arrays(time=t, position=x, units={'position': 'mm'})`.
 
-        Units that are not given are SI; `lead`, as '10 mm', converts rpm, rad/s and N m.  Raises InputError.
+        Units that are not given are SI; `lead`, as '10 mm', converts rpm, rad/s and N m, `rated`, as '2.4 N m' or
+        '800 N', a force in %.  Raises InputError.
         """
         return cls.from_frame({'time': time, **quantities}, {name: name for name in ('time', *quantities)}, units,
-                              lead)
+                              lead, rated)
 
     @classmethod
     def from_frame(cls, frame: Any, columns: Mapping[str, str], units: Mapping[str, str] | None = None,
-                   lead: str | None = None) -> 'Measurement':
+                   lead: str | None = None, rated: str | None = None) -> 'Measurement':
         """Return a measurement of a DataFrame, or a dict of arrays; `columns` by quantity, as {'position': 'x [mm]'}.
 
         Units and raises as `from_arrays`; the heading of a column may have its unit.
         """
-        wanted = _wanted(columns, units or {}, lead)
+        wanted = _wanted(columns, units or {}, lead, rated)
         arrays = {str(name): frame[name] for name in frame}
         return _of_table(wanted, ArrayTable('frame', 'frame', arrays, list(wanted.values()), MOST_ROWS))
 
     @classmethod
     def from_file(cls, path: str | os.PathLike[str], columns: Mapping[str, str],
-                  units: Mapping[str, str] | None = None, lead: str | None = None, rows: Rows = ALL) -> 'Measurement':
+                  units: Mapping[str, str] | None = None, lead: str | None = None, rows: Rows = ALL,
+                  rated: str | None = None) -> 'Measurement':
         """Return what a file measured: CSV, .mat, .parquet, .tdms, or a bag, whose columns are TOPIC:FIELD.
 
         A column is a name, a number from 1 on, or `row`.  Raises InputError and RecordingError.
         """
-        path, wanted = Path(path), _wanted(columns, units or {}, lead)
+        path, wanted = Path(path), _wanted(columns, units or {}, lead, rated)
         if path.is_dir() or path.suffix == '.mcap':
             return _of_bag(path, wanted)._taken(rows)
         if 'time' not in wanted:
             raise InputError(COLUMNS_OPTION, ','.join(columns), 'with the time of each row', 'add time=COLUMN, or '
                              f'time=row, and how long a row is: {UNIT_OPTION} time="0.5 ms"')
         wanted = {'time': wanted['time'], **wanted}
-        reader = _READERS.get(path.suffix.lower())
-        table: Table = ArrayTable('DATA', path.name, reader(path), list(wanted.values()), MOST_ROWS, rows) if (
-            reader) else CsvTable('DATA', path, list(wanted.values()), MOST_ROWS, rows, _MOST_BYTES)
-        return _of_table(wanted, table)
+        reader, given = _READERS.get(path.suffix.lower()), list(wanted.values())
+        return _of_table(wanted, CsvTable('DATA', path, given, MOST_ROWS, rows, _MOST_BYTES) if reader is None else
+                         ArrayTable('DATA', path.name, reader(path), given, MOST_ROWS, rows))
 
     def with_spring(self, stiffness: float, feed: float | None = None) -> 'Measurement':
         """Return it with the position x = s − F/k of a slider that is pulled by a spring of a `stiffness` k, N/m.
@@ -147,6 +141,10 @@ class Measurement:
         remark = {'remark': '; '.join(self.remarks)} if self.remarks else {}
         write_measured(Path(folder), self.times, self.columns, {**self.facts, **(facts or {}), **remark})
 
+    def as_run(self, folder: str | os.PathLike[str]) -> MeasuredRun:
+        """Return the run of the folder that it was written to, without reading that."""
+        return MeasuredRun(Bag(Path(folder)), os.fspath(folder), {'time': self.times, **self.columns})
+
     def _taken(self, rows: Rows) -> 'Measurement':
         of = np.flatnonzero((self.times >= rows.begin) & (self.times <= rows.end))
         of = of[of % rows.every == 0]
@@ -155,7 +153,8 @@ class Measurement:
         return replace(self, times=self.times[of], columns={name: one[of] for name, one in self.columns.items()})
 
 
-def _wanted(columns: Mapping[str, str], units: Mapping[str, str], lead: str | None) -> dict[str, Wanted]:
+def _wanted(columns: Mapping[str, str], units: Mapping[str, str], lead: str | None, rated: str | None
+            ) -> dict[str, Wanted]:
     for option, names in ((COLUMNS_OPTION, columns), (UNIT_OPTION, units)):
         for name in names:
             if name not in QUANTITIES:
@@ -163,21 +162,12 @@ def _wanted(columns: Mapping[str, str], units: Mapping[str, str], lead: str | No
     for name in units:
         if name not in columns:
             raise InputError(UNIT_OPTION, name, f'of a quantity in {COLUMNS_OPTION}', 'add its column')
-    turn = None if lead is None else Fraction(stated('--lead', lead, LENGTHS))
-    if turn is not None and turn <= 0:
-        raise InputError('--lead', lead, '> 0 m a turn', 'what counts the other way has a unit like "-1 deg"')
-    return {name: wanted_column(COLUMNS_OPTION, str(column), UNIT_OPTION, units.get(name), QUANTITIES[name] if (
-        turn is None) else with_lead(QUANTITIES[name], turn), takes_heading=True) for name, column in columns.items()}
+    drive = drive_units(lead, rated)
+    return {name: wanted_column(COLUMNS_OPTION, str(column), UNIT_OPTION, units.get(name), drive.of(QUANTITIES[name]),
+                                takes_heading=True) for name, column in columns.items()}
 
 
-def stated(option: str, text: str, units: Mapping[str, Fraction]) -> float:
-    """Return a number with its unit, as "10 mm", in SI; raises InputError."""
-    if not re.fullmatch(r'[-+.\d]\S* *[^-+.\d\s].*', text.strip()):
-        raise InputError(option, text, 'a number with its unit', f'for example "10 {next(iter(units))}"')
-    return float(wanted_column('', '', option, text, units).in_si)
-
-
-def _of_table(wanted: Mapping[str, Wanted], table: Table) -> Measurement:
+def _of_table(wanted: Mapping[str, Wanted], table: csv_table.Table) -> Measurement:
     numbers = dict(zip(wanted, table.columns, strict=True))
     units = ', '.join(f'{name} {one.unit}' for name, one, given in zip(wanted, table.wanted, wanted.values())
                       if one.unit != given.unit)
@@ -242,8 +232,9 @@ def _tdms(path: Path) -> Mapping[str, Any]:
     except (OSError, ValueError) as error:
         raise InputError('DATA', str(path), 'a readable TDMS file', str(error)) from None
     names = [channel.name for channel in channels]
-    found = {channel.name if names.count(channel.name) == 1 else f'{channel.group_name}/{channel.name}': channel[:]
-             for channel in channels}
+    heads = [(channel.name if names.count(channel.name) == 1 else f'{channel.group_name}/{channel.name}')
+             + (f' [{unit}]' if (unit := channel.properties.get('unit_string')) else '') for channel in channels]
+    found = {head: channel[:] for head, channel in zip(heads, channels, strict=True)}
     waves = [channel for channel in channels if 'wf_increment' in channel.properties]
     return {**({'time': waves[0].time_track()} if waves and 'time' not in found else {}), **found}
 

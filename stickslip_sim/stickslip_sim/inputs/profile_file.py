@@ -18,7 +18,8 @@ from ..core.errors import InputError
 from ..core.time_grid import decimal, multiples
 from ..scene.model import ProfileSource
 from ..scene.schema import BY_NAME, FILE_SETTINGS, MOST_POINTS
-from .csv_table import FORCES, LENGTHS, SPEEDS, TIMES, CsvTable, Wanted, wanted_column
+from .csv_table import CsvTable
+from .units import FORCES, LENGTHS, SPEEDS, TIMES, Wanted, wanted_column
 
 Given = Mapping[str, object]
 _POSITION = 'position'

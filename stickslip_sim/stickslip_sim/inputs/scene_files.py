@@ -9,7 +9,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from .. import runs
-from ..core.errors import InputError
+from ..core.errors import InputError, check_kind
 from ..core.types import Progress
 from ..scene import Scene, scene_from_values
 from ..scene.load import named, named_scene, of_a_scene, read_scene
@@ -27,6 +27,8 @@ def load_scene(name_or_path: str | os.PathLike[str], overrides: Mapping[str, obj
     from a file lies in the folder of the scene, one of the overrides in the working directory, or below.  Raises
     InputError, whose text begins with the file, and RecordingError for a profile in a bag.
     """
+    check_kind('scene', name_or_path, str | os.PathLike, 'the name or path of a scene',
+               'values go into the second argument: load_scene(NAME, CHANGES)')
     name = os.fspath(name_or_path)
     with named(name):
         found = read_scene(name)
@@ -36,9 +38,8 @@ def load_scene(name_or_path: str | os.PathLike[str], overrides: Mapping[str, obj
 
 def scene_of(given: SceneOrName) -> Scene:
     """Return a scene, or the one of that name or path; raises as `load_scene`, and InputError on anything else."""
-    if not isinstance(given, Scene | str | os.PathLike):
-        raise InputError('scene', type(given).__name__, 'a Scene, or the name or path of one',
-                         'load_scene(NAME, CHANGES) takes other values')
+    check_kind('scene', given, Scene | str | os.PathLike, 'a Scene, or the name or path of one',
+               'load_scene(NAME, CHANGES) takes other values')
     return given if isinstance(given, Scene) else load_scene(given)
 
 

@@ -27,11 +27,16 @@ _FEW = 100      # points: of more the residuals of the best law alone are drawn
 
 
 class MeasuredPoints(NamedTuple):
-    """Measured points: speeds in m/s, coefficients, and which are of the forward direction."""
+    """Measured points: speeds in m/s, coefficients (or forces, N), and which are of the forward direction.
+
+    `spread` has the quartiles of each, (2, n), where there are some.
+    """
 
     speeds: Numbers
     coefficients: Numbers
     forward: NDArray[np.bool_]
+    spread: Numbers | None = None
+    are_forces: bool = False
 
 
 class FittedLine(NamedTuple):
@@ -66,6 +71,8 @@ def plot_friction_fits(points: MeasuredPoints, lines: Sequence[FittedLine], head
 
 def _curves(panel: Axes, points: MeasuredPoints, speeds: Numbers, lines: Sequence[FittedLine], log: bool) -> None:
     many = len(points.speeds) > _FEW
+    if points.spread is not None:
+        panel.vlines(_shown(points.speeds, points, log), *points.spread, color=style.GREY, linewidth=0.7, label='quartiles')
     for chosen, face, label in _directions(points):
         panel.plot(_shown(points.speeds[chosen], points, log), points.coefficients[chosen], 'o', label=label,
                    zorder=1.5 if many else 4.0, markersize=_size(points), markerfacecolor=face,
@@ -89,7 +96,7 @@ def _residuals(panel: Axes, points: MeasuredPoints, lines: Sequence[FittedLine],
     panel.axhline(0.0, color=style.BLACK, linewidth=0.6)
     places = _shown(points.speeds, points, log)
     for k, line in enumerate(lines if len(points.speeds) <= _FEW else lines[:1]):
-        left = 1e3 * (points.coefficients - line.at_points)
+        left = (1.0 if points.are_forces else 1e3) * (points.coefficients - line.at_points)
         for chosen, face, _ in _directions(points):
             if k:
                 panel.plot(places[chosen], left[chosen], color=_COLOURS[k % len(_COLOURS)], linewidth=0.6,
@@ -125,7 +132,8 @@ def _rest(points: MeasuredPoints) -> float:
 
 
 def _axes(panels: NDArray[np.object_], points: MeasuredPoints) -> None:
-    for row, label in enumerate(('friction coefficient', 'residual / 10⁻³')):
+    for row, label in enumerate(('friction / N', 'residual / N') if points.are_forces else
+                                ('friction coefficient', 'residual / 10⁻³')):
         panels[row, 0].set_ylabel(label)
         style.letter(panels[row, 0], 'ac'[row])
         style.letter(panels[row, 1], 'bd'[row])

@@ -327,8 +327,8 @@ _LABEL = 0.7                                  # in, from a panel to what it show
 _Draw = Callable[[WindowPanels, Axes], None]
 
 
-def plot_run(run: DrawnRun, windows: Sequence[TimeWindow], *paths: Path | str) -> None:
-    """Draw a run in one window, or in two beside each other, the second a part of the first, into each path.
+def plot_run(run: DrawnRun, windows: Sequence[TimeWindow], *paths: Path | str) -> Figure:
+    """Return a run in one window, or in two beside each other, the second a part of the first, drawn into each path.
 
     The ending of a path (.png, .pdf, .svg) says how.  The places of the panels are fixed: a layout that looks at what
     is in them takes as long as all of the drawing.
@@ -340,7 +340,7 @@ def plot_run(run: DrawnRun, windows: Sequence[TimeWindow], *paths: Path | str) -
     width = _WIDTH if columns == 1 else _WIDTH_OF_TWO
     height = sum(heights) + _GAP * (rows - 1) + _TOP + _BOTTOM
     panel = (width - columns * (_LEFT + _RIGHT)) / columns
-    figure = Figure(figsize=(width, height), dpi=_DPI)
+    figure = style.ShownFigure(figsize=(width, height), dpi=_DPI)
     grid = figure.subplots(rows, columns, sharex='col', squeeze=False, height_ratios=heights, gridspec_kw={
         'left': _LEFT / width, 'right': 1.0 - _RIGHT / width, 'top': 1.0 - _TOP / height, 'bottom': _BOTTOM / height,
         'hspace': _GAP * rows / sum(heights), 'wspace': (_LEFT + _RIGHT) / panel})
@@ -353,6 +353,7 @@ def plot_run(run: DrawnRun, windows: Sequence[TimeWindow], *paths: Path | str) -
     for one, window in zip(grid[0, 1:], windows[1:]):
         one.set_title(f'{window.begin:.6g} to {window.end:.6g} s', loc='left', fontsize=10, color=style.GREY)
     style.save(figure, *paths)
+    return figure
 
 
 def _panels_of_lines(run: DrawnRun) -> list[tuple[float, _Draw]]:

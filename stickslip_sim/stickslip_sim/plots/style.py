@@ -3,6 +3,7 @@
 """How all pictures look: colours, lines, files.  Without matplotlib's global state, so that no display is needed."""
 
 from collections.abc import Iterable, Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -36,6 +37,15 @@ JOURNAL: dict[str, Any] = {   # for pictures that are printed at the width of on
     'axes.grid': True, 'grid.color': '#dddddd', 'grid.linewidth': 0.5, 'axes.axisbelow': True, 'savefig.dpi': 300,
 }
 SINGLE_COLUMN, DOUBLE_COLUMN = 3.5, 7.1   # in
+
+
+class ShownFigure(Figure):
+    """A figure that a notebook shows by itself, whether or not it has imported pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        data = BytesIO()
+        self.savefig(data, format='png')
+        return data.getvalue()
 
 
 def save(figure: Figure, *paths: Path | str) -> None:

@@ -6,7 +6,7 @@ from ..bags.bag import BagWriter, Split
 from ..bags.bag_files import RecordedMessage
 from ..bags.schemas import MessageCodec, Schema, flat_layout, schema
 from ..bags.topics import DIAGNOSTICS, RECORDED, QosProfile, Topic, recorded_topics
-from .measured_run import MeasuredRun, read_run, write_measured
+from .measured_run import MeasuredRun, read_run, run_of, write_measured
 from .offline_bag import OfflineBag, samples_of, write_bag
 from .reader import Bag, open_bag
 from .recorded_run import RecordedRun
@@ -36,6 +36,7 @@ __all__ = [
     'read_run',
     'receipt_file',
     'recorded_topics',
+    'run_of',
     'samples_of',
     'schema',
     'write_bag',

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A run that was measured: its modes, events and cycles are derived from the speed, and nothing is known of a scene."""
 
+import os
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
@@ -12,16 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..bags import topics
-from ..bags.bag import METADATA, BagWriter
+from ..bags.bag import AT_ONCE, METADATA, BagWriter
 from ..bags.message_layout import MessageRows
 from ..bags.schemas import flat_layout
 from ..bags.topics import EXTERNAL_FORCE, FRICTION_FORCE, SLIDER_STATE
 from ..core.arrays import Columns, Numbers
-from ..core.errors import InputError, RecordingError, RecordingWarning
+from ..core.errors import InputError, RecordingError, RecordingWarning, check_kind
 from ..core.types import Event, Mode
 from ..core.version import __version__
 from ..figures.slips import SLIP_TIMES, events_of_slips, slips_of
-from ..runs import COLUMNS
+from ..runs import COLUMNS, Run
 from ..scene import Scene
 from ..simulation.step_result import Mark
 from .offline_bag import interleaved
@@ -50,7 +51,7 @@ def write_measured(folder: Path | str, times: Numbers, columns: Mapping[str, Num
     used = [topics.SLIDER_STATE, *(topic for name, topic in OF_FORCES.items() if name in columns)]
     rows = [MessageRows(channel, flat_layout(topic.type)) for channel, topic in enumerate(used, 1)]
     metadata = {'version': __version__, 'origin': MEASURED, MEASURED: ','.join(columns), **facts}
-    bag = BagWriter(folder, [topic.resolved() for topic in used], {}, metadata)
+    bag = BagWriter(folder, [topic.resolved() for topic in used], {}, metadata, packing=AT_ONCE)
     try:
         for first in range(0, len(times), _BLOCK):
             part = slice(first, first + _BLOCK)
@@ -97,11 +98,13 @@ STICK_SHARE = 0.05   # of the largest speed: the threshold where none is stated
 class MeasuredRun(RecordedRun):
     """A run folder of `stickslip import`; columns that were not measured are NaN in its `samples`.
 
-    The velocity follows from the position where it was not measured itself.
+    The velocity follows from the position where it was not measured itself.  What is `known` of its columns, the time
+    among them, is not read again.
     """
 
-    def __init__(self, bag: Bag, path: Path | str) -> None:
+    def __init__(self, bag: Bag, path: Path | str, known: Mapping[str, Numbers] | None = None) -> None:
         super().__init__(bag, path)
+        self._known = known
         self.measured = tuple(bag.metadata[METADATA].get(MEASURED, '').split(','))
         self.notes = (*self.notes, *self._derived())
 
@@ -188,12 +191,14 @@ class MeasuredRun(RecordedRun):
 
     @cached_property
     def _recorded(self) -> Columns:
-        known = [name for name in OF_STATE if name in self.measured]
-        columns = self.bag.columns_of(SLIDER_STATE, ('time', *known))
+        wanted = ('time', *(name for name in OF_STATE if name in self.measured))
+        columns = ({name: self._known[name] for name in wanted} if self._known is not None else
+                   self.bag.columns_of(SLIDER_STATE, wanted))
         times, count = columns['time'], len(columns['time'])
         if count < 2 or not (times[1:] > times[:-1]).all():
             raise RecordingError(f'{self.bag.path}: a measured run has at least 2 states, one after the other')
-        return {'step': np.arange(count), **dict.fromkeys((*OF_STATE, 'rest_time'), _unknown(count)), **columns}
+        unknown = dict.fromkeys((*OF_STATE, 'rest_time'), _unknown(count))
+        return {'step': np.arange(count, dtype=np.int32), **unknown, **columns}
 
     @cached_property
     def _velocity(self) -> Numbers:
@@ -206,6 +211,8 @@ class MeasuredRun(RecordedRun):
     def _force(self, type_name: str, name: str) -> Numbers:
         if name not in self.measured:
             return _unknown(len(self._velocity))
+        if self._known is not None:
+            return self._known[name]
         topic = next((topic for topic, kind in self.bag.topics.items() if kind == type_name), None)
         force = np.empty(0) if topic is None else self.bag.columns(topic)['force']
         if len(force) != len(self._velocity):
@@ -226,12 +233,23 @@ class MeasuredRun(RecordedRun):
 
 # Reads any run folder: of a simulation, or of a measurement.
 
+def run_of(given: Run | str | os.PathLike[str]) -> Run:
+    """Return a run, or the one in a folder; raises InputError on what is neither."""
+    if isinstance(given, str | os.PathLike):
+        return read_run(os.fspath(given))
+    if not hasattr(given, 'samples'):
+        raise InputError('run', type(given).__name__, 'a run, or the path of its folder', 'make one of arrays first: '
+                         'Measurement.from_arrays(...).write(FOLDER)')
+    return given
+
+
 def read_run(path: Path | str) -> RecordedRun:
     """Return the run in a folder, or in an MCAP file by itself; raises RecordingError when there is none, or damaged.
 
     A run without an end (its process was killed, its disk was full, or it is still being written) is read as far as it
     goes, with a RecordingWarning; its `notes` say so too.  One that was measured is a MeasuredRun.
     """
+    check_kind('path', path, str | os.PathLike, 'the path of a run folder', 'arrays: Measurement.from_arrays')
     bag = Bag(path)
     is_measured = bag.metadata.get(METADATA, {}).get('origin') == MEASURED
     run = MeasuredRun(bag, path) if is_measured else RecordedRun(bag, path)

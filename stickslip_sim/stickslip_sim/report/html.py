@@ -63,6 +63,25 @@ def folded(summary: str, content: str) -> str:
     return f'<details><summary>{escape(summary)}</summary>{content}</details>'
 
 
+class Shown:
+    """A result as notebooks show it: `_shown` has its parts, the first of them a line that says what it is."""
+
+    def _shown(self) -> Iterable[Part]:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """Return that line."""
+        return f'<{next(iter(self._shown()))}>'
+
+    def _repr_html_(self) -> str:
+        return html_of(self._shown())
+
+
+def html_of(parts: Iterable[Part]) -> str:
+    """Return parts as HTML, without a page around them."""
+    return '\n'.join(map(_html, parts))
+
+
 def _html(part: Part) -> str:
     if isinstance(part, Section):
         return '\n'.join([f'<h2>{escape(part.title)}</h2>', *map(_html, part.parts)])

@@ -19,7 +19,7 @@ import random
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from ..core.errors import InputError, SolverError
+from ..core.errors import InputError, SolverError, check_kind
 from ..core.input_profile import Sinusoid
 from ..core.types import Event, EventKind
 from ..figures.distance import MOMENT, Shift, lasting, shift_between
@@ -102,6 +102,7 @@ def error_estimate(run: SimulatedRun) -> ErrorEstimate:
 
     Raises InputError on a closed loop, whose controller would be in these runs.
     """
+    check_kind('run', run, SimulatedRun, 'a run that was simulated just now', 'simulate the scene again')
     if run.is_commanded:
         raise InputError('run', run.source, 'of a scene alone', 'simulate the scene: a controller answers anew')
     if run.scene.solver.name == 'exact':

@@ -5,7 +5,7 @@
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,10 +90,10 @@ _DRAWN = ('position', 'velocity', 'drive_position', 'drive_velocity', 'drive_for
           'external_force', LOAD_COLUMN, 'mode')
 
 
-def draw_run(run: Run, window: tuple[float, float] | None, *paths: Path | str) -> None:
-    """Draw a run into each path; raises InputError for a window (s) that is not in it."""
+def draw_run(run: Run, window: tuple[float, float] | None, *paths: Path | str) -> Any:
+    """Draw a run into each path; return the figure.  Raises InputError for a window (s) that is not in it."""
     windows = windows_of(run, window, _commanded(run))
-    plot_run(_drawn(run, _title(run), windows, run.setpoint), windows, *paths)
+    return plot_run(_drawn(run, _title(run), windows, run.setpoint), windows, *paths)
 
 
 class RunBeside(NamedTuple):

@@ -7,16 +7,12 @@ from itertools import chain, count
 from typing import NamedTuple
 
 from ..core.errors import InputError
-from ..core.types import EventKind
-from ..figures.catalogue import OF_A_CYCLE, head_of, unit_of
-from ..figures.cycles import Summary, miss_note, touch_note
-from ..report.model import Part, Table, facts
-from ..report.quantity import counted, quantity
+from ..figures.cycles import LABEL, miss_note, summary_report
+from ..report.model import Part, facts
+from ..report.quantity import quantity
 from ..scene.values import file_name
 from .run import Run
 from .simulated import SimulatedRun
-
-_LABEL, _NUMBER = 21, 13    # columns
 
 
 def run_report(run: SimulatedRun) -> Iterator[Part]:
@@ -24,33 +20,14 @@ def run_report(run: SimulatedRun) -> Iterator[Part]:
     cost, energy, note = run.receipt['cost'], run.receipt['energy'], miss_note(run.scene)
     yield f'{run.scene.name}: {run.duration:g} s with the {run.scene.solver.name} solver'
     if note:
-        yield facts([('note', note)], _LABEL)
+        yield facts([('note', note)], LABEL)
     yield from summary_report(run.summary)
     if energy is not None:
         yield facts([('energy', f'{quantity(energy["drive_work"], "J")} from the drive, '
                                 f'{quantity(energy["friction_loss"], "J")} to friction; '
-                                f'the balance closes to {energy["relative_residual"]:.1g} of the throughput')], _LABEL)
+                                f'the balance closes to {energy["relative_residual"]:.1g} of the throughput')], LABEL)
     yield facts([('cost', f'{quantity(cost["cpu_time_s"], "s")} CPU, '
-                          f'{quantity(cost["cpu_time_per_simulated_second"], "s")} per simulated second')], _LABEL)
-
-
-def summary_report(figures: Summary) -> Iterator[Part]:
-    """Yield the events by kind and the kind of motion, then the figures of the cycles, if there are any."""
-    counts = ', '.join(f'{n} {kind.name.lower()}' for kind, n in figures.events.items() if n and kind != EventKind.KNOT)
-    said = [('events', counts or 'none'), ('motion', _motion(figures)), ('note', touch_note(figures))]
-    yield facts([(label, text) for label, text in said if text], _LABEL)
-    if figures.last is not None and figures.mean is not None:
-        yield Table(('', 'last cycle', f'mean of {figures.averaged}'),
-                    [(head_of(name), *(quantity(getattr(cycle, name), unit_of(name))
-                                       for cycle in (figures.last, figures.mean)))
-                     for name in OF_A_CYCLE], least=(_LABEL + 1, _NUMBER, _NUMBER))
-
-
-def _motion(figures: Summary) -> str:
-    text = f'{figures.motion}, {100.0 * figures.stick_share:.4g} % of the time in stick'
-    if figures.cycles:
-        text += f'; {counted(figures.cycles, "cycle")}, {"settled" if figures.settled else "not settled"}'
-    return text
+                          f'{quantity(cost["cpu_time_per_simulated_second"], "s")} per simulated second')], LABEL)
 
 
 def file_stem(run: Run) -> str:

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 from ..core.arrays import Columns, data_frame
 from ..core.paths import check_picture_name
 from ..core.types import Event, Sample
-from ..figures.cycles import Cycle, Summary, cycle_figures
+from ..figures.cycles import Cycle, Summary, cycle_figures, summary_report
+from ..report.html import Shown
+from ..report.model import Part
 from ..scene import Scene
 from ..simulation.step_result import Mark
 
@@ -120,11 +122,11 @@ class Run(Protocol):
     def frame(self) -> Any:
         """Return the samples as a pandas.DataFrame with COLUMNS; raises InputError without pandas."""
 
-    def plot(self, path: Path | str, window: tuple[float, float] | None = None) -> None:
-        """Draw the run over time into `path` (.png, .pdf or .svg), and beside it a `window` (begin and end, s) of it.
+    def plot(self, path: Path | str | None = None, window: tuple[float, float] | None = None) -> Any:
+        """Draw the run over time, and beside it a `window` (begin and end, s) of it; return the figure.
 
-        Without a window the last cycles of a long run are beside it.  Raises InputError for other endings, and for a
-        window that is not in the run.
+        It is written to `path` (.png, .pdf or .svg), if there is one.  Without a window the last cycles of a long run
+        are beside it.  Raises InputError for other endings, and for a window that is not in the run.
         """
 
 
@@ -172,8 +174,13 @@ def recorded_normal_force(scene: Scene, samples: Columns, is_changed: bool) -> C
 
 # What every run shows of itself: its cycles, a data frame, a picture.
 
-class Views:
+class Views(Shown):
     """The part of `Run` that follows from the rest of it."""
+
+    def _shown(self: Run) -> Iterator[Part]:
+        yield f'{type(self).__name__} {self.name}: {self.source}'
+        yield from summary_report(self.summary)
+        yield from self.notes
 
     @property
     def duration(self: Run) -> float:
@@ -198,16 +205,17 @@ class Views:
         names = [*COLUMNS, *([LOAD_COLUMN] if LOAD_COLUMN in self.samples else [])]
         return data_frame({name: whole.get(name, self.samples[name]) for name in names}, 'samples')
 
-    def plot(self: Run, path: Path | str, window: tuple[float, float] | None = None) -> None:
-        """Draw the run over time into `path` (.png, .pdf or .svg), and beside it a `window` (begin and end, s) of it.
+    def plot(self: Run, path: Path | str | None = None, window: tuple[float, float] | None = None) -> Any:
+        """Draw the run over time, and beside it a `window` (begin and end, s) of it; return the figure.
 
-        Without a window the last cycles of a long run are beside it.  Raises InputError for other endings, and for a
-        window that is not in the run.
+        It is written to `path` (.png, .pdf or .svg), if there is one.  Without a window the last cycles of a long run
+        are beside it.  Raises InputError for other endings, and for a window that is not in the run.
         """
-        check_picture_name('path', path)
+        if path is not None:
+            check_picture_name('path', path)
         from .picture import draw_run  # matplotlib takes half a second
 
-        draw_run(self, window, path)
+        return draw_run(self, window, *([] if path is None else [path]))
 
 
 @kept

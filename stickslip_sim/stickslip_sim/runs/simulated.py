@@ -84,7 +84,7 @@ MAX_EVENTS = 5_000_000     # 1 GB
 _PARTS = 200               # of a run: progress is reported, and Ctrl-C heard, this often
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SimulatedRun(Views):
     """A run that was simulated just now; `samples` have the exact instants too, as `second` and `fraction`."""
 

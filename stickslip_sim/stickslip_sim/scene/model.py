@@ -8,12 +8,14 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from html import escape
 from typing import Any, NamedTuple
 
 from ..axis import Axis, InitialState
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile, constant
 from ..core.time_grid import Grid
+from ..report.html import folded
 from ..simulation.drive import DriveLimits
 from ..simulation.encoder import EncoderSettings
 from ..simulation.faults import Fault, Faults
@@ -152,7 +154,7 @@ class ProfileSource(NamedTuple):
     unit: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Scene:
     """One scene; `values` are all of its parameters by dotted name.
 
@@ -176,6 +178,12 @@ class Scene:
     values: dict[str, object] = field(hash=False)
     sources: Mapping[str, ProfileSource] = field(default_factory=dict, compare=False)
     normal_load: InputProfile | None = None   # N, on top of the normal force of the axis
+
+    def __repr__(self) -> str:
+        return f'<Scene {self.name}: {self.summary or self.hash[:12]}>'
+
+    def _repr_html_(self) -> str:
+        return folded(repr(self)[1:-1], f'<pre>{escape(self.text)}</pre>')
 
     @cached_property
     def text(self) -> str:

@@ -3,7 +3,7 @@
 """Feeds by what their runs would say of parameters: the one that narrows them most is proposed."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate
 from typing import NamedTuple
@@ -13,6 +13,9 @@ import numpy as np
 from ..core.arrays import Numbers
 from ..core.errors import InputError, SolverError
 from ..core.types import Progress
+from ..inputs.scene_files import SceneOrName, scene_of
+from ..report.html import Shown
+from ..report.model import Part
 from ..report.quantity import quantity
 from ..scene import Scene, changed, scene_from_values
 from ..study.variation import number_at
@@ -166,14 +169,20 @@ class Experiment:
         return np.sqrt(np.diag(self.covariance))
 
 
-@dataclass(frozen=True)
-class Design:
+@dataclass(frozen=True, repr=False)
+class Design(Shown):
     """The experiments of a scene, the best first, and the feeds that were left out, with the reason."""
 
     scene: Scene
     wishes: Wishes
     experiments: tuple[Experiment, ...]
     left_out: tuple[tuple[Feed, str], ...]
+
+    def _shown(self) -> Iterator[Part]:
+        from .report import design_report
+
+        yield f'Design for {", ".join(self.wishes.parameters)} of {self.scene.name}: best is {self.best.feed.name}'
+        yield from design_report(self)
 
     @property
     def best(self) -> Experiment:
@@ -187,6 +196,26 @@ class Design:
         for one in self.experiments:
             kinds.setdefault(one.feed.kind, one)
         return list(kinds.values())
+
+
+def design(scene: SceneOrName, parameters: Sequence[str], *, duration: float = 10.0,
+           speeds: tuple[float, float] | None = None, travel: float = math.inf, rate: float = 1000.0,
+           resolution: float = 1e-6, noise: float = 0.0, force_noise: float | None = None, known: float = 0.3,
+           scatter: float = 0.01, criterion: str = D_OPTIMAL, progress: Progress = None) -> Design:
+    """Return the feeds whose runs would narrow parameters of a scene, the best first.
+
+    They are between `speeds` (m/s; None: a tenth to ten times the scene's), and take a `duration` (s) and at most a
+    `travel` (m).  The position is read `rate` times a second (Hz), with a `resolution` and a `noise` (m), the drive
+    force with a `force_noise` (N), or not at all.  `known` is the deviation of each parameter before, a share, and
+    `scatter` that from slip to slip.  Raises InputError.
+    """
+    if isinstance(parameters, str):
+        raise InputError('parameters', parameters, 'a list of names', f'give [{parameters!r}]')
+    if criterion not in (A_OPTIMAL, D_OPTIMAL):
+        raise InputError('criterion', criterion, f'{D_OPTIMAL} or {A_OPTIMAL}', 'D is the volume, A the variances')
+    loaded = scene_of(scene)
+    return designed(loaded, Wishes(tuple(parameters), duration, speeds or default_speeds(loaded), Sensors(
+        rate, resolution, noise, force_noise), known, scatter, travel, criterion), progress)
 
 
 def designed(scene: Scene, wishes: Wishes, progress: Progress = None) -> Design:

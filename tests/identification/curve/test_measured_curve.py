@@ -8,7 +8,7 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.identification.curve.measured_curve import FrictionCurve, Units, load_curve, units_of
-from stickslip_sim.inputs.csv_table import SPEEDS, in_si, named_unit
+from stickslip_sim.inputs.units import SPEEDS, in_si, named_unit
 from tests.support.repository import ROOT
 
 MILLI = Units('mm/s')
@@ -18,7 +18,7 @@ def curve_of(tmp_path: Path, text: str, units: Units = MILLI, direction: str = '
              meant: tuple[str, ...] = ()) -> FrictionCurve:
     path = tmp_path / 'curve.csv'
     path.write_text(text, encoding='utf-8')
-    return load_curve(str(path), units, direction, meant)
+    return load_curve(str(path), units, meant).chosen(direction)
 
 
 def test_the_example_is_read_to_the_last_bit() -> None:
@@ -103,7 +103,8 @@ def test_text_in_another_encoding_is_to_be_saved_as_utf8_and_named_once(tmp_path
 @pytest.mark.parametrize(('speed', 'force', 'normal_force', 'said'), [
     ('mm', None, None, '--speed-unit = .mm. is refused: must be one of m/s, .*did you mean mm/s?'),
     ('mm/s', 'kg', 1.0, '--force-unit = .kg. is refused'),
-    ('mm/s', 'N', None, '--normal-force is missing: must be given with --force-unit'),
+    ('mm/s', 'N m', None, '--force-unit = .N m. is refused: .*it is of a turn: give --lead'),
+    ('mm/s', '%', None, '--force-unit = .%. is refused: .*it is of a rating: give --rated'),
     ('mm/s', 'N', 0.0, '--normal-force = 0.0 is refused'),
     ('mm/s', None, 1200.0, '--normal-force = 1200.0 is refused: must be given with --force-unit'),
 ])

@@ -225,7 +225,8 @@ def fit_smooth(form: SmoothForm, curve: FrictionCurve) -> Fit:
     """Return the best fit of a law to a curve that has more points than parameters, not all at rest."""
     above = curve.speeds[curve.speeds > 0.0]
     low = np.array([0.0, 0.0, 0.0, np.log(above.min() / _BEYOND), np.log(MIN_EXPONENT)])[:len(form.names)]
-    high = np.array([COEFFICIENT.high, COEFFICIENT.high, SLOPE.high, np.log(above.max() * _BEYOND),
+    most = max(COEFFICIENT.high, _BEYOND * float(curve.coefficients.max()))    # forces are larger
+    high = np.array([most, most, SLOPE.high, np.log(above.max() * _BEYOND),
                      np.log(MAX_EXPONENT)])[:len(form.names)]
     found = least_squares(lambda parameters: form.coefficients(parameters, curve.speeds) - curve.coefficients,
                           np.clip(_start(form, curve, low[3], high[3]), low, high), jac='3-point', bounds=(low, high),
@@ -243,7 +244,8 @@ def _start(form: SmoothForm, curve: FrictionCurve, low: float, high: float) -> N
     start: Numbers = np.zeros(len(form.names))
     for exponent in form.exponents:
         for scale in np.linspace(low, high, _SCALES):
-            values, error = nnls(form.basis(curve.speeds, float(np.exp(scale)), exponent), curve.coefficients)
+            with np.errstate(invalid='ignore'):    # a column of zeros, far from the speeds of the curve
+                values, error = nnls(form.basis(curve.speeds, float(np.exp(scale)), exponent), curve.coefficients)
             if error < best:
                 best = error
                 start = np.array([*values, scale, np.log(exponent)])[:len(form.names)]

@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 
 from ...core.arrays import Numbers
 from ...core.errors import InputError
-from ...inputs.csv_table import FORCES, SPEEDS, in_si, named_unit, unit_of
+from ...inputs.units import FORCES, SI_ALONE, SPEEDS, DriveUnits, in_si, named_unit, unit_of
 from ...scene.load import named, read_text
 from ...scene.plausible import FASTEST, MEANT, ROUGHEST
 
-DIRECTIONS = ('both', 'forward', 'backward')
 SLOWEST = 2e-4        # m/s: the fastest point of a plausible curve is faster
 SMOOTHEST = 1e-4      # a coefficient: the highest of a plausible curve is higher, but for hydrostatic guides
 _MOST_POINTS = 20_000
@@ -29,20 +28,42 @@ _WHAT = 'friction curve'
 
 
 class FrictionCurve(NamedTuple):
-    """Measured points by rising speed: `speeds` >= 0 in m/s, `coefficients`, and whether each is `forward`."""
+    """Measured points by rising speed: `speeds` >= 0 in m/s, `coefficients`, and whether each is `forward`.
+
+    Without a normal force the coefficients are forces, N.
+    """
 
     speeds: Numbers
     coefficients: Numbers
     forward: NDArray[np.bool_]
     unread: int = 0          # columns of the file after the second
+    spread: Numbers | None = None   # the quartiles of each (2, n)
+
+    def chosen(self, direction: str) -> 'FrictionCurve':
+        """Return the points that are forward or backward, or both; raises InputError where there is none."""
+        those = {'forward': self.forward, 'backward': ~self.forward}.get(direction, np.full(self.forward.shape, True))
+        if not those.any():
+            raise InputError('--direction', direction, 'one that there are points of', 'leave it out for all')
+        return self._replace(speeds=self.speeds[those], coefficients=self.coefficients[those],
+                             forward=self.forward[those],
+                             spread=None if self.spread is None else self.spread[:, those])
 
 
 class Units(NamedTuple):
-    """How the columns are read: names of `units`; `force` None: the second is a coefficient; `normal_force` in N."""
+    """How the columns are read: names of units; `force` None: the second is a coefficient; `normal_force` in N.
+
+    A force without a normal force is fitted as a force.  `drive` has the units of turns, torque and ratings.
+    """
 
     speed: str
     force: str | None = None
     normal_force: float | None = None
+    drive: DriveUnits = SI_ALONE
+
+    @property
+    def are_forces(self) -> bool:
+        """Whether what is fitted are forces."""
+        return self.force is not None and self.normal_force is None
 
 
 class _Point(NamedTuple):
@@ -51,21 +72,22 @@ class _Point(NamedTuple):
     friction: float
 
 
-def units_of(speed: str, force: str | None, normal_force: float | None) -> Units:
+def units_of(speed: str, force: str | None, normal_force: float | None, drive: DriveUnits = SI_ALONE) -> Units:
     """Return the units of the columns; raises InputError."""
+    speed = unit_of('--speed-unit', speed, drive.of(SPEEDS))
     if force is None:
         if normal_force is not None:
             raise InputError('--normal-force', normal_force, 'given with --force-unit, for a column of forces',
                              'add --force-unit N, or drop it for a column of coefficients')
-        return Units(unit_of('--speed-unit', speed, SPEEDS))
-    if normal_force is None or not 0.0 < normal_force < math.inf:
-        raise InputError('--normal-force', normal_force, 'given with --force-unit, in N, finite and > 0',
+        return Units(speed, drive=drive)
+    if normal_force is not None and not 0.0 < normal_force < math.inf:
+        raise InputError('--normal-force', normal_force, 'in N, finite and > 0',
                          'the coefficient is the force divided by it')
-    return Units(unit_of('--speed-unit', speed, SPEEDS), unit_of('--force-unit', force, FORCES), normal_force)
+    return Units(speed, unit_of('--force-unit', force, drive.of(FORCES)), normal_force, drive)
 
 
-def load_curve(path: str, units: Units, direction: str = 'both', meant: tuple[str, ...] = ()) -> FrictionCurve:
-    """Return the curve of a file, of one `direction` or both; raises InputError, whose text names the file.
+def load_curve(path: str, units: Units, meant: tuple[str, ...] = ()) -> FrictionCurve:
+    """Return the curve of a file; raises InputError, whose text names the file.
 
     A curve that no slideway has, because a unit was mistaken, is refused unless `speed` or `friction` is `meant`.
     """
@@ -77,7 +99,7 @@ def load_curve(path: str, units: Units, direction: str = 'both', meant: tuple[st
         if len(points) > _MOST_POINTS:
             raise InputError(_WHAT, f'{len(points)} points', f'at most {_MOST_POINTS}', 'average points of one speed')
         _check_headings(headings, units)
-        curve = _of_direction(_curve(points, units), direction)
+        curve = _curve(points, units)
         if not curve.coefficients.any():
             raise InputError(_WHAT, '0 all over', 'friction above 0', 'there is nothing to fit; look at the columns')
         _check_plausible(curve, units, meant)
@@ -139,8 +161,8 @@ def _number(cell: str) -> float | None:
 
 def _check_headings(headings: list[list[str]], units: Units) -> None:
     """Raise InputError when a heading names another unit than the option."""
-    for option, column, given, known in (('--speed-unit', 0, units.speed, SPEEDS),
-                                         ('--force-unit', 1, units.force, FORCES)):
+    for option, column, given, known in (('--speed-unit', 0, units.speed, units.drive.of(SPEEDS)),
+                                         ('--force-unit', 1, units.force, units.drive.of(FORCES))):
         for cells in headings:
             unit = named_unit(cells[column], known) if column < len(cells) else None
             if unit is not None and unit != given:
@@ -158,30 +180,22 @@ def _curve(points: list[_Point], units: Units) -> FrictionCurve:
         if point.friction > 0.0 if opposed else point.friction < 0.0:
             raise InputError(f'line {point.line}', point.friction, 'friction of one sign for one direction of motion',
                              'give all of it the sign of the speed, or none; leave out starts and reversals')
-    factor = SPEEDS[units.speed]
+    factor, of_force = units.drive.of(SPEEDS)[units.speed], units.drive.of(FORCES)[units.force or 'N']
     speeds = np.array([in_si(abs(point.speed), factor) for point in points])
-    frictions = np.array([in_si(abs(point.friction), FORCES[units.force or 'N']) for point in points])
+    frictions = np.array([in_si(abs(point.friction), of_force) for point in points])
     order = np.argsort(speeds, kind='stable')
     forward = np.array([point.speed >= 0.0 for point in points])
     return FrictionCurve(speeds[order], frictions[order] / (units.normal_force or 1.0), forward[order])
 
 
-def _of_direction(curve: FrictionCurve, direction: str) -> FrictionCurve:
-    chosen = {'both': np.full(curve.forward.shape, True), 'forward': curve.forward,
-              'backward': ~curve.forward}[direction]
-    if not chosen.any():
-        raise InputError('--direction', direction, 'one that the file has points of', 'leave it out for all')
-    return FrictionCurve(curve.speeds[chosen], curve.coefficients[chosen], curve.forward[chosen])
-
-
 def _check_plausible(curve: FrictionCurve, units: Units, meant: tuple[str, ...]) -> None:
     """Raise InputError on a curve that looks as if it had been read in the wrong unit: it is asked back."""
-    force = f' and {units.normal_force:g} N' if units.force else ''
+    force = f' and {units.normal_force:g} N' if units.normal_force else ''
     for name, most, unit, low, high, read in (
             ('speed', curve.speeds.max(), ' m/s', SLOWEST, FASTEST, units.speed),
             ('friction', curve.coefficients.max(), '', SMOOTHEST, ROUGHEST,
              f'{units.force}{force}' if units.force else 'a coefficient')):
-        if not low <= most <= high and name not in meant:
+        if not low <= most <= high and name not in meant and not (name == 'friction' and units.are_forces):
             raise InputError(f'the highest {name}', f'{most:g}{unit}',
                              f'plausible for a slideway, from {low:g} to {high:g}{unit}', f'it was read as {read}: '
                              f'correct the unit, or if it is meant, add {MEANT} {name}')

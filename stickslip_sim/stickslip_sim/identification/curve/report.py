@@ -7,11 +7,13 @@ It also writes the scene with that law, and draws it.
 
 import shlex
 from collections.abc import Mapping, Sequence
+from html import escape
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from ...core.errors import InputError
 from ...report.quantity import counted
 from ...scene import Scene
 from ...scene.schema import BY_NAME
@@ -28,10 +30,13 @@ from .best_law import (
 from .law_fit import MISSED, SPARE, Fit, points_table
 from .measured_curve import FrictionCurve, Units
 
-BEST, POINTS = 'best', 'points'
+BEST, POINTS, EACH = 'best', 'points', 'each'
+LAWS = 'table', 'stribeck', 'exponential', 'hyperbolic'
 _PATTERN = 0.05   # a chance below it is called a pattern
 _DIFFER = 3.0     # standard errors
 _ENOUGH = 12      # points for a law of four parameters
+_OF_FORCES = {('initial', ''): 'N', ('limit', ''): 'N', ('coefficients', ''): 'N', ('viscous', 's/m'): 'N s/m',
+              ('end_slope', 's/m'): 'N s/m'}
 
 
 class FittedCurve(NamedTuple):
@@ -47,21 +52,32 @@ class FittedCurve(NamedTuple):
     chosen: Fit
     kinetic: Mapping[str, object]
     is_points: bool
+    notes: tuple[str, ...] = ()   # how the points were found, of a run
+
+    def __repr__(self) -> str:
+        return f'<FittedCurve of {self.path}: the law {self.chosen.name} of {len(self.fits.by_rank)}>'
+
+    def _repr_html_(self) -> str:
+        return f'<pre>{escape(chr(10).join(self.lines()))}</pre>'
 
     def lines(self) -> list[str]:
         """Return what the tool prints."""
-        chosen = _points_lines(self.kinetic, self.measured) if self.is_points else _fitted_law_lines(self.chosen)
-        return [*_curve_lines(self.path, self.measured, self.units), '', *_fit_lines(self.fits), '', *chosen]
+        chosen = (_points_lines(self.kinetic, self.measured) if self.is_points else
+                  _fitted_law_lines(self.chosen, self.units.are_forces))
+        return [*curve_lines(self.path, self.measured, self.units, self.notes), '', *_fit_lines(self.fits), '', *chosen]
 
     def scene(self, base: Scene | None, changes: Mapping[str, object], backward: bool) -> Scene:
         """Return the scene with the law, of motion `backward` or of both directions; raises InputError."""
+        if self.units.are_forces:
+            raise InputError('--normal-force', None, 'given in N for a scene, or by --scene',
+                             'the laws of a scene are those of a coefficient')
         origin = origin_of(self.measured, Path(self.path).stem, self.units.normal_force)
         if backward and base is not None:
             return scene_with_friction_backwards(self.kinetic, base, changes, origin)
         return scene_with_friction(self.kinetic, base, changes, origin)
 
-    def text(self, made: Scene, base: str | None) -> str:
-        """Return the scene as a file, with a line that says from where its law is, and how far that is from the points.
+    def origin(self, base: str | None) -> str:
+        """Return a comment that says from where the law is, and how far that is from the points.
 
         `base` is the path of the scene that it was put into.
         """
@@ -71,7 +87,7 @@ class FittedCurve(NamedTuple):
         what = 'its points' if self.is_points else fitted
         whose = "the paper's axis" if base is None else f'the axis of {Path(base).name}'
         name = ' '.join(Path(self.path).name.split())
-        return f'# Kinetic friction from {name}: {what}; {whose}.\n' + short_text(made)
+        return f'# Kinetic friction from {name}: {what}; {whose}.\n'
 
     def next_lines(self, out: str, made: Scene, base: str | None, changes: Sequence[str]) -> list[str]:
         """Return what no measurement gave and the file `out` has all the same, and the command that goes on."""
@@ -88,7 +104,7 @@ class FittedCurve(NamedTuple):
         from ...plots.friction_fits import FittedLine, MeasuredPoints, plot_friction_fits, plot_speeds
 
         chosen = self.chosen
-        points = MeasuredPoints(*chosen.curve[:3])
+        points = MeasuredPoints(*chosen.curve[:3], chosen.curve.spread, self.units.are_forces)
         speeds = plot_speeds(points)
         lines = []
         for fit in [chosen, *(fit for fit in self.fits.by_rank if fit is not chosen)]:
@@ -98,25 +114,62 @@ class FittedCurve(NamedTuple):
         plot_friction_fits(points, lines, Path(self.path).name, path)
 
 
-def fitted_curve(path: str, measured: FrictionCurve, units: Units, law: str) -> FittedCurve:
+def fitted_curves(path: str, measured: FrictionCurve, units: Units, direction: str, law: str,
+                  notes: tuple[str, ...] = (), base: Scene | None = None) -> list[FittedCurve]:
+    """Return the fits to the points of a direction, or to EACH; by the BEST law all of them have the first one's.
+
+    A `base` has the law to begin with.  Raises InputError.
+    """
+    found: list[FittedCurve] = []
+    if base is not None and law == BEST:
+        law = next((one for one in LAWS if one == base.values['friction.kinetic.law']), law)
+    for one in ('forward', 'backward') if direction == EACH else (direction,):
+        found.append(fitted_curve(path, measured.chosen(one), units, law, notes))
+        law = found[0].chosen.name if law == BEST else law
+    return found
+
+
+def scene_of_curves(found: Sequence[FittedCurve], base: Scene | None, changes: Mapping[str, object], backward: bool
+                    ) -> Scene:
+    """Return the scene with one law, of motion `backward` or of both directions, or with one for each of them.
+
+    Without a `base` static friction is that of each at rest.  Raises InputError.
+    """
+    made = found[0].scene(base, changes, backward)
+    if len(found) == 1:
+        return made
+    at_rest = {} if base is not None else {'friction.static.backward.initial': float(f'{found[1].chosen.at_rest:.6g}')}
+    return found[1].scene(made, {**at_rest, **changes}, True)
+
+
+def scene_text_of(found: Sequence[FittedCurve], made: Scene, base: str | None) -> str:
+    """Return the scene as a file that says from where its laws are; `base` is the path of the scene it was put into."""
+    return ''.join(one.origin(base) for one in found) + short_text(made)
+
+
+def fitted_curve(path: str, measured: FrictionCurve, units: Units, law: str, notes: tuple[str, ...] = ()
+                 ) -> FittedCurve:
     """Return the fits to a curve, of which a `law`, the BEST, or its POINTS are chosen; raises InputError."""
     fits = fit_laws(measured)
     chosen = fits.by_rank[0] if law in (BEST, POINTS) else fits.of(law)
     kinetic = points_table(measured) if law == POINTS else chosen.scene
-    return FittedCurve(path, measured, units, fits, chosen, kinetic, law == POINTS)
+    return FittedCurve(path, measured, units, fits, chosen, kinetic, law == POINTS, notes)
 
 
-def _curve_lines(curve: str, measured: FrictionCurve, units: Units) -> list[str]:
-    """Return what was read, in SI, so that a wrong unit is seen."""
+def curve_lines(curve: str, measured: FrictionCurve, units: Units, notes: Sequence[str] = ()) -> list[str]:
+    """Return what was read, in SI, so that a wrong unit is seen; or how it was found."""
     speeds, coefficients = measured.speeds, measured.coefficients
     forward = int(measured.forward.sum())
     count = len(speeds)
     where = {count: '', 0: ', all backward'}.get(forward, f', {forward} forward and {count - forward} backward')
-    read = 'a coefficient' if units.force is None else f'{units.force}, over {units.normal_force:g} N'
+    over = '' if units.normal_force is None else f', over {units.normal_force:g} N'
+    read = 'a coefficient' if units.force is None else f'{units.force}{over}'
+    name, unit = ('friction', ' N') if units.are_forces else ('coefficient', '')
     lines = [f'{curve}: {count} points{where}',
-             f'{"read as":22} {units.speed} and {read}',
+             *([f'{"" if k else "found by":22} {note}' for k, note in enumerate(notes)]
+               or [f'{"read as":22} {units.speed} and {read}']),
              f'{"speed":22} {speeds.min():g} to {speeds.max():g} m/s',
-             f'{"coefficient":22} {coefficients.min():.4g} to {coefficients.max():.4g}']
+             f'{name:22} {coefficients.min():.4g} to {coefficients.max():.4g}{unit}']
     return lines + ([f'{"not read":22} {counted(measured.unread, "more column")}'] if measured.unread else [])
 
 
@@ -142,12 +195,13 @@ def _fit_lines(fits: Fits) -> list[str]:
     return lines
 
 
-def _fitted_law_lines(fit: Fit) -> list[str]:
+def _fitted_law_lines(fit: Fit, are_forces: bool) -> list[str]:
     """Return the parameters of a law with their intervals, and what the residuals say."""
     lines = [f'{fit.name:22} {"value":>12}   95 % interval']
     intervals = fit.intervals()
     for name, value in _values(fit).items():
         unit = BY_NAME[f'friction.kinetic.{name.partition("[")[0]}'].unit
+        unit = _OF_FORCES.get((name.partition('[')[0], unit), unit) if are_forces else unit
         lines.append(f'{name:22} {value:12.5g}   {_interval(name, fit, intervals)} {unit}'.rstrip())
     signs = sign_changes(fit)
     few = f'{counted(signs.changes, "change")} of sign along the speed'
@@ -160,8 +214,7 @@ def _fitted_law_lines(fit: Fit) -> list[str]:
     lines += [f'{side.name:22} {side.ratio:.4f} ± {side.error:.4f} of the curve, mean of {side.points} points'
               for side in both]
     if any(abs(side.ratio - 1.0) > _DIFFER * side.error for side in both):
-        lines.append('the directions differ: fit them one by one, --direction forward --out SCENE.yaml, then '
-                     '--backward --scene SCENE.yaml')
+        lines.append('the directions differ: fit each by itself, --direction each')
     return lines + _rest_lines(fit) + _miss_lines(fit)
 
 
