@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .core.types import Event, EventKind, Instant, Mode, Sample
     from .figures.cycles import Cycle, Summary
     from .identification.identify import identify
+    from .identification.prediction import predict
     from .identification.run_friction import friction_curve
     from .inputs import load_scene
     from .inputs.measurement import Measurement
@@ -50,8 +51,9 @@ __all__ = [
     'Command', 'ControllerError', 'Cycle', 'Event', 'EventKind', 'InputError', 'Instant', 'Measurement', 'Mode',
     'RecordingError', 'RecordingWarning', 'Run', 'Sample', 'Scene', 'Sensitivities', 'Simulator', 'SolverError',
     'StickslipError', 'Summary', 'UnsoundError', 'VerdictError', '__version__', 'close_loop', 'close_loops',
-    'critical', 'design', 'error_estimate', 'friction_curve', 'identify', 'load_scene', 'plot_runs', 'read_run',
-    'run_batch', 'scene_names', 'sensitivities', 'simulate', 'simulate_events', 'sweep', 'tune', 'uncertainty',
+    'critical', 'design', 'error_estimate', 'friction_curve', 'identify', 'load_scene', 'plot_runs', 'predict',
+    'read_run', 'run_batch', 'scene_names', 'sensitivities', 'simulate', 'simulate_events', 'sweep', 'tune',
+    'uncertainty',
 ]
 
 if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a misspelt one
@@ -64,6 +66,7 @@ if not TYPE_CHECKING:   # a type checker knows the names from above, and finds a
         '.core.types': ('Event', 'EventKind', 'Instant', 'Mode', 'Sample'),
         '.figures.cycles': ('Cycle', 'Summary'),
         '.identification.identify': ('identify',),
+        '.identification.prediction': ('predict',),
         '.identification.run_friction': ('friction_curve',),
         '.inputs': ('load_scene',),
         '.inputs.measurement': ('Measurement',),

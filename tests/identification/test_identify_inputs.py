@@ -10,7 +10,8 @@ import pytest
 import stickslip_sim as stickslip
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.identification.identified import NOT_IDENTIFIABLE, VOID
-from stickslip_sim.identification.results import IDENTIFIED_SCENE, write_results
+from stickslip_sim.identification.identified_scene import IDENTIFIED_SCENE
+from stickslip_sim.identification.results import write_results
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import changed
 from tests.support.measured_runs import MOTOR, OF_FRICTION, OFF, RIGID, as_run, between, check, estimate_of, few_starts

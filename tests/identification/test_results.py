@@ -24,7 +24,7 @@ from stickslip_sim.identification.identified import (
     Misfit,
     StartEnd,
 )
-from stickslip_sim.identification.identified_scene import identified_text, posterior_text
+from stickslip_sim.identification.identified_scene import IDENTIFIED_SCENE, identified_text, posterior_text
 from stickslip_sim.identification.identify import identify
 from stickslip_sim.identification.measured_friction import (
     binned,
@@ -40,7 +40,6 @@ from stickslip_sim.identification.measured_friction import (
 from stickslip_sim.identification.report import IDENTIFIED_VALUES
 from stickslip_sim.identification.results import (
     IDENTIFIED_PAGE,
-    IDENTIFIED_SCENE,
     POSTERIOR,
     fitted_channels,
     write_results,

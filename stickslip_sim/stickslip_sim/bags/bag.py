@@ -158,7 +158,6 @@ class Packing(NamedTuple):
 
 IN_STEP = Packing(64 * 1024, 3)      # a larger chunk takes longer to close than a step may wait
 AT_ONCE = Packing(1024 * 1024, 1)    # of many messages that are known
-CHUNK_SIZE = IN_STEP.chunk_size
 METADATA = 'stickslip'  # the record that says what simulated the run
 NEXT_FILE = 'stickslip_next'   # at the end of a file that was split: the one in which the bag goes on
 _WALL = 'wall'       # log times in the metadata, where they are not simulation time

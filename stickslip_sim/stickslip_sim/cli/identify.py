@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from . import completion
-from .arguments import SceneChanges, recorded_run, run_argument, scene_changes
+from .arguments import SceneChanges, recorded_run, scene_changes
 from .files import check_new_folder, new_folder, progress_bar
 
 if TYPE_CHECKING:
@@ -18,18 +18,20 @@ if TYPE_CHECKING:
 
 
 @click.command(short_help='Find the parameters of an axis from a measured run.')
-@run_argument
+@click.argument('runs', nargs=-1, required=True, metavar='RUN...', shell_complete=completion.complete_folders)
 @click.option('--scene', required=True, metavar='START', shell_complete=completion.complete_scenes,
               help='The scene to begin with: a file, or a shipped one.')
 @click.option('--free', required=True, metavar='FILE.yaml', help='What is sought, and in which ranges.')
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the results.')
 @click.option('--laws', is_flag=True, help='Fit other laws of friction, too, and say which is best.')
+@click.option('--test', 'tests', multiple=True, metavar='RUN', help='Predict this run with the scene that is found.')
+@click.option('--each', multiple=True, metavar='A.B', help='Of several runs each has this free parameter of its own.')
 @click.option('--workers', metavar='N|all', help='Processes to use [default: 1].')
 @click.option('--resume', is_flag=True, help='Go on with what was interrupted.')
 @scene_changes('Change a parameter of the scene to begin with.')
-def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str | None, resume: bool,
-             changes: SceneChanges) -> None:
-    """Find from a measured RUN of an axis the scene that reproduces it, with intervals.
+def identify(runs: tuple[str, ...], scene: str, free: str, out: str, laws: bool, tests: tuple[str, ...],
+             each: tuple[str, ...], workers: str | None, resume: bool, changes: SceneChanges) -> None:
+    """Find from a measured RUN of an axis the scene that reproduces it, with intervals; or from several at once.
 
     FOLDER gets identified.yaml, a scene; posterior.yaml, what is left open of it, for uncertainty --with; report.html
     and report.json.  Exit with 3 when the model does not fit the run; the report shows where.  Ctrl-C keeps the fits
@@ -48,18 +50,20 @@ def identify(run: str, scene: str, free: str, out: str, laws: bool, workers: str
     from ..scene.load import read_text
 
     start = changes.load(scene)
-    measured = recorded_run(run)
-    work = WorkFolder(out, facts_of(measured, start, read_text(Path(free), 'file of distributions')), resume)
+    measured, given = [*map(recorded_run, runs)], [*map(recorded_run, tests)]
+    names = ' and '.join(one.name for one in measured)
+    sought = read_text(Path(free), 'file of distributions') + ' '.join(each)
+    work = WorkFolder(out, facts_of(measured, start, sought), resume)
     with _going_on(work), progress_bar('identifying') as progress:
-        found = find(measured, start, free, workers=count, laws=laws, keeper=work,
+        found = find(measured, start, free, workers=count, laws=laws, keeper=work, test=given, each=each,
                      progress=progress and (lambda stage, share: progress(share)))
     with new_folder('--out', work.results) as folder:
-        write_results(measured, found, scene, folder)
+        write_results(measured[0], found, scene, folder, names)
     work.finish()
-    print('\n'.join(result_lines(found, measured.name)))
+    print('\n'.join(result_lines(found, names)))
     print(f'written: {Path(out) / IDENTIFIED_PAGE}')
     if not found.fits:
-        raise VerdictError(f'the model does not fit {measured.name}: {found.misfits[0].statement}; '
+        raise VerdictError(f'the model does not fit {names}: {found.misfits[0].statement}; '
                            f'{Path(out) / IDENTIFIED_PAGE} shows where')
 
 

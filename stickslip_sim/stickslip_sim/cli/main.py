@@ -30,7 +30,8 @@ _SECTIONS = {   # each verb by what a reader wants, as in the help: its function
     'Check': {'check': 'check.check', 'verify': 'verify.verify'},
     'Study': {'critical': 'critical.critical', 'sweep': 'sweep.sweep', 'map': 'map.map_',
               'uncertainty': 'uncertainty.uncertainty'},
-    'Identify': {'friction': 'friction.friction', 'identify': 'identify.identify', 'design': 'design.design'},
+    'Identify': {'friction': 'friction.friction', 'identify': 'identify.identify',
+                 'predict': 'predict.predict', 'design': 'design.design'},
     'Measure the engine': {'advise': 'advise.advise', 'bench': 'bench.bench', 'extremes': 'extremes.extremes'},
 }
 _INTERRUPTED = 130

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from itertools import pairwise
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -18,11 +17,10 @@ from ..core.time_grid import Instants
 from ..core.types import Event, Sample
 from ..identification.axis_model import AxisModel
 from ..identification.free_parameters import FreeParameter
-from ..identification.identified_scene import FORMS, with_measured_inputs
+from ..identification.identified_scene import with_measured_inputs
 from ..identification.motions import motions_of, track_of
+from ..identification.prediction import DRIVE_COLUMNS, check_is_moved, known_sensors
 from ..identification.readings import SensorReadings, drives_directly, readings_of
-from ..identification.report import sensor_errors
-from ..identification.results import IDENTIFIED_SCENE
 from ..identification.run_start import from_measured_start
 from ..recording import MeasuredRun
 from ..runs import SimulatedRun, simulate_events
@@ -101,11 +99,7 @@ def _borders(profile: InputProfile, duration: float) -> Iterator[float]:
 
 
 # A scene simulated beside a measured run: from where that starts, moved by what was measured of its drive and force.
-#
-# The inputs of the scene itself are another run's where it was identified from one: beside this run they say nothing.
 
-_COLUMNS = {'drive': ('drive_velocity', 'drive_position'), 'force': ('external_force',)}
-_PUSHED = 'external_force', 'drive_force'   # of a scene without a drive spring
 _FORCE = 'sensor.external_force.'
 
 
@@ -125,14 +119,8 @@ def as_measured(scene: Scene, source: str, measured: MeasuredRun, duration: floa
 
     Raises InputError where the run has not measured what moves the scene.
     """
-    folder = Path(source).parent if Path(source).name == IDENTIFIED_SCENE else None
-    errors = sensor_errors(folder) if folder else {}
-    for section, columns in _columns(scene).items():
-        others = folder and (folder / FORMS[section].file).is_file()
-        if not set(columns) & set(measured.measured) and (others or columns == _PUSHED):
-            whose = f'that of {source} is the one of another run' if others else 'nothing else moves this scene'
-            raise InputError('RUN', measured.name, f'measured with its {" or ".join(columns)}: {whose}',
-                             f'import it with {columns[-1]}=COLUMN')
+    errors, others = known_sensors(source)
+    check_is_moved(scene, source, others, measured)
     readings = _corrected(readings_of(measured, scene, {}), errors)
     last = float(readings.times[-1])
     if duration is not None and not 0.0 < duration <= last:
@@ -149,11 +137,6 @@ def as_measured(scene: Scene, source: str, measured: MeasuredRun, duration: floa
     notes = tuple(_notes(measured, sections, errors, scene, started is not scene))
     return AsMeasured(replace(dense, sampled=HeldSamples(samples), notes=notes), readings.shift,
                       _position_rmse(samples, readings))
-
-
-def _columns(scene: Scene) -> Mapping[str, tuple[str, ...]]:
-    """Return what may be measured of each input of a scene."""
-    return {'force': _PUSHED} if drives_directly(scene) else _COLUMNS
 
 
 def _corrected(readings: SensorReadings, errors: Mapping[str, float]) -> SensorReadings:
@@ -191,7 +174,7 @@ def _notes(measured: MeasuredRun, sections: tuple[str, ...], errors: Mapping[str
         off = [f'{name.removeprefix(_FORCE)} {value:.6g}' for name, value in errors.items()
                if section == 'force' and name.startswith(_FORCE)]
         yield f'{words}, less the errors of its sensor: {", ".join(off)} (SI)' if off else f'{words}, as read'
-    if not drives_directly(scene) and not set(_COLUMNS['drive']) & set(measured.measured):
+    if not drives_directly(scene) and not set(DRIVE_COLUMNS) & set(measured.measured):
         yield f'its drive is that of its scene: {measured.name} has none that was measured'
     if is_moved:
         yield f'it starts where {measured.name} does'

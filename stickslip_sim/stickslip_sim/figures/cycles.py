@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from ..core.types import Event, EventKind, Mode
 from ..friction import StaticLawKind
-from ..report.html import html_of
+from ..report.html import parts_as_html
 from ..report.model import Part, Table, facts
 from ..report.quantity import counted, quantity
 from ..scene import Scene
@@ -88,7 +88,7 @@ class Summary(NamedTuple):
         return f'<Summary of {self.motion}: {headline(self)}>'
 
     def _repr_html_(self) -> str:
-        return html_of(summary_report(self))
+        return parts_as_html(summary_report(self))
 
 
 def cycle_figures(events: Sequence[Event]) -> list[Cycle]:

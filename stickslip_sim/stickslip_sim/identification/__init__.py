@@ -7,13 +7,16 @@ What is in here, from the top floor down; each imports only from the floors belo
     identify           the verb: from a run to what was found in it, with intervals, tests and slips
     results            the folder of results
     run_friction       the friction curve out of a run
+    prediction         a scene along a run that it was not identified from
     other_laws         the run fitted with other laws, and the criterion that compares them
     wrong_model        the best numbers of a model that does not follow the run
     report             what was found, as lines, page and values
+    prediction_report  predictions, as table, picture and values
     posterior          what is left open of the scene, as distributions
     known_friction     friction curves with the bands that the numbers leave
     many_fits          fits from many starts, on several processes, and kept in a folder
     measured_friction  friction straight from a measurement, and where in its cycle a reading stands
+    several_runs       several runs in one fit, and what they disagree about
     stages             from a start to the best fit of the whole run
     starts             points to start from
     residual_tests     tests that reject a model

@@ -27,7 +27,7 @@ from ..simulation.simulator import Simulator
 from ..study.variation import changes_at
 from .free_parameters import DELAY, FreeParameter
 from .motions import MeasuredMotion
-from .readings import OUTPUTS, SensorReadings, drives_directly, shifted, travelled
+from .readings import OUTPUTS, SensorReadings, drives_directly, instants_of, shifted, travelled
 
 # Friction of trial values: smooth laws by their tables, without a proof of their error; static not below kinetic.
 #
@@ -192,10 +192,10 @@ class AxisModel:
         law = self.scene.axis.friction.kinetic.law
         return values if law is None else with_table(values, law.shape, self._held)
 
-    def delay(self, values: Numbers) -> float:
-        """Return how long after its readings the measured force acts, s."""
+    def delay(self, values: Numbers, channel: str = 'external_force') -> float:
+        """Return how long after its readings the measured force acts, or how late a channel is read, s."""
         return float(sum(value for one, value in zip(self._parameters, values.tolist(), strict=True)
-                         if one.sensor == ('external_force', DELAY)))
+                         if one.sensor == (channel, DELAY)))
 
     def _force_of(self, values: Numbers) -> InputProfile:
         """Return the force that acted, from what its sensor measured."""
@@ -258,14 +258,22 @@ class AxisModel:
             deflection = _BELOW * motion.direction * held / dynamics.axis.contact.stiffness
         return InitialState(position, 0.0, 0.0, stretch, deflection)
 
-    def samples(self, dynamics: Dynamics, begin: float, initial: InitialState, at: Instants) -> Numbers | None:
-        """Return rows of samples from a state at `begin` (s) on, at times since then; None if the solver gives up."""
+    def samples(self, dynamics: Dynamics, begin: float, initial: InitialState, at: Instants, delay: float = 0.0
+                ) -> Numbers | None:
+        """Return rows of samples from a state at `begin` (s) on, at times since then; None if the solver gives up.
+
+        They are those of a `delay` (s) before; before the state the slider moves evenly.
+        """
+        early = at.seconds + at.fractions - delay
+        at = at if delay == 0.0 else instants_of(np.maximum(early, 0.0))
         rows = np.empty((len(at.seconds), len(Sample._fields)))
         duration = float(at.seconds[-1] + at.fractions[-1])
         try:
             self._simulator(dynamics, begin, initial, duration).take_samples(at, rows, with_events=False)
         except StickslipError:
             return None
+        if delay > 0.0:
+            rows[:, OUTPUT_PLACES['position']] += np.minimum(early, 0.0) * rows[:, OUTPUT_PLACES['velocity']]
         return rows
 
     def motion(self, dynamics: Dynamics, begin: float, initial: InitialState, duration: float

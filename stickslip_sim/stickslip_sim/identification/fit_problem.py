@@ -277,14 +277,16 @@ class FitProblem:
         if dynamics is None:
             return None
         names = [channel.name for channel in self.measurement.channels]
+        delays = [self.model.delay(values, name) for name in names]
         columns: list[list[Numbers]] = [[] for _ in names]
         for stretch in stretches.parts:
             initial = self.model.state_after(stretch.before, dynamics, values)
-            rows = self.model.samples(dynamics, stretch.begin, initial, stretch.at)
-            if rows is None:
-                return None
-            for name, column in zip(names, columns, strict=True):
-                column.append(rows[:, OUTPUT_PLACES[name]])
+            rows = {delay: self.model.samples(dynamics, stretch.begin, initial, stretch.at, delay)
+                    for delay in sorted({*delays})}
+            for name, delay, column in zip(names, delays, columns, strict=True):
+                if (own := rows[delay]) is None:
+                    return None
+                column.append(own[:, OUTPUT_PLACES[name]])
         found = []
         for name, column in zip(names, columns, strict=True):
             offset, scale = self.model.gain(values, name)

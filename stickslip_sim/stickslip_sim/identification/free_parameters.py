@@ -3,8 +3,8 @@
 """What an identification may change: parameters of a scene, and offsets and scales of sensors, with their ranges.
 
 A file of them has the format of `stickslip uncertainty --with`; beside the parameters of a scene it may name
-`sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`: measured = offset + scale · true; and of a measured input
-`sensor.CHANNEL.delay`: what is read acts so much later.
+`sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`: measured = offset + scale · true; and `sensor.CHANNEL.delay`: what
+is read of a measured input acts so much later, what is read of a channel is that of so much earlier.
 """
 
 import math
@@ -21,7 +21,7 @@ from ..scene.parameter import Parameter
 from ..study.sample import Distribution
 from ..study.uncertainty import load_uncertain, uncertain_of
 from ..study.variation import parameter_of
-from .readings import INPUTS, UNITS
+from .readings import UNITS
 
 DELAY = 'delay'
 _OFFSET, _SCALE = 'offset', 'scale'
@@ -92,11 +92,11 @@ def _parameter(name: str) -> tuple[Parameter, int | None]:
     if not name.startswith('sensor.'):
         return parameter_of(name)
     _, channel, what, *more = [*name.split('.'), '', '']
-    if channel in INPUTS and what == DELAY and not any(more):
-        return Parameter(name, 'double', 0.0, 's', 'later than it was read', low=-1.0, high=1.0), None
-    if channel not in UNITS or what not in (_OFFSET, _SCALE) or any(more):
-        raise InputError('free parameter', name, f'sensor.CHANNEL.{_OFFSET} or sensor.CHANNEL.{_SCALE}, CHANNEL one of '
+    if channel not in UNITS or what not in (_OFFSET, _SCALE, DELAY) or any(more):
+        raise InputError('free parameter', name, f'sensor.CHANNEL.{_OFFSET}, .{_SCALE} or .{DELAY}, CHANNEL one of '
                          + ', '.join(UNITS), 'for example sensor.drive_force.scale')
+    if what == DELAY:
+        return Parameter(name, 'double', 0.0, 's', 'the delay of its sensor', low=-1.0, high=1.0), None
     if what == _OFFSET:
         return Parameter(name, 'double', 0.0, UNITS[channel], 'added to the truth', low=-1e15, high=1e15), None
     return Parameter(name, 'double', 1.0, '', 'factor on the truth', low=1e-6, high=1e6), None

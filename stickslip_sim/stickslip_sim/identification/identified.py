@@ -3,8 +3,10 @@
 """What an identification found: the scene that reproduces a measured run, and how well each of its numbers is known."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+
+import numpy as np
 
 from ..core.arrays import Numbers
 from ..report.html import Shown
@@ -13,6 +15,7 @@ from ..scene import Scene
 
 FOUND, AT_BOUND, NOT_IDENTIFIABLE, VOID = 'found', 'at a bound', 'not identifiable', 'void'
 LEVEL = 0.95   # of all intervals
+_CONSTANT = 1e-12   # of the largest: a range so small is rounding
 
 
 @dataclass(frozen=True)
@@ -49,6 +52,13 @@ def moved(one: Estimate, step: float) -> float:
     return one.value * math.exp(step) if one.logarithmic else one.value + step
 
 
+def fit_percent(measured: Numbers, off: Numbers) -> float:
+    """Return the fit in % of what is `off` by so much (n,); NaN where what was measured is constant."""
+    spread = float(np.linalg.norm(measured - measured.mean()))
+    constant = np.ptp(measured) <= _CONSTANT * np.abs(measured).max(initial=0.0)
+    return float('nan') if constant else 100.0 * (1.0 - float(np.linalg.norm(off)) / spread)
+
+
 @dataclass(frozen=True)
 class ChannelFit:
     """A measured channel, in `unit`: arrays (n,) of `times` (s, of the measurement), `measured` and `fitted` numbers.
@@ -74,6 +84,21 @@ class ChannelFit:
     def residuals(self) -> Numbers:
         """Measured less fitted (n,), in `unit`, or what is new in that."""
         return self.measured - self.fitted if self.new is None else self.new
+
+    @property
+    def rmse(self) -> float:
+        """The root mean square of measured less fitted, in `unit`."""
+        return float(np.sqrt(np.mean((self.measured - self.fitted)**2)))
+
+    @property
+    def largest(self) -> float:
+        """The largest distance of measured and fitted, in `unit`."""
+        return float(np.abs(self.measured - self.fitted).max())
+
+    @property
+    def fit_percent(self) -> float:
+        """100 (1 − |measured − fitted| / |measured − its mean|), in %; NaN of a channel that is constant."""
+        return fit_percent(self.measured, self.measured - self.fitted)
 
 
 @dataclass(frozen=True)
@@ -143,6 +168,48 @@ class SlipFit:
     fitted_break_away_force: float
 
 
+@dataclass(frozen=True)
+class FoundNumber:
+    """A number of a sensor, or of the start, that was found in a run; `is_at_end` of its range."""
+
+    name: str
+    unit: str
+    value: float
+    is_at_end: bool
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """What a scene says of a measured run: `channels` measured and predicted, with their own sensors.
+
+    `found` is what was fitted to the run, and nothing else: offset and delay of its sensors, and its start.
+    `stretch_fit` is the fit in % of the stretch of the drive spring, NaN without one: the position follows the drive
+    whatever the friction is.
+    """
+
+    scene: Scene
+    run: str
+    channels: tuple[ChannelFit, ...]
+    found: tuple[FoundNumber, ...]
+    stretch_fit: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def values(self) -> dict[str, float]:
+        """What was found of the sensors and the start, by its name."""
+        return {one.name: one.value for one in self.found}
+
+
+@dataclass(frozen=True)
+class RunAlone:
+    """What one of several runs says by itself, and the numbers of its `own` in the fit of all, by name."""
+
+    run: str
+    fits: bool
+    estimates: tuple[Estimate, ...]
+    own: Mapping[str, float]
+
+
 @dataclass(frozen=True, repr=False)
 class Identification(Shown):
     """A scene identified from a run.
@@ -153,7 +220,9 @@ class Identification(Shown):
     compares `laws`, `cost` is the chi-square over `n_residuals`, `runs` how many simulations it took, `notes` what a
     user must know.  The start of the simulation is at `shift` s of the measurement, whose times all of this has.
     `measured_inputs` are the sections of the scene, `drive` or `force`, that are as they were measured; `restarts` are
-    the measured arrests (s) at which the fitted motion begins anew.
+    the measured arrests (s) at which the fitted motion begins anew.  `predictions` are of other runs.
+    Of several runs the channels, slips and numbers of its own are those of the first; `alone` is what each says by
+    itself, `disagreements` where their intervals do not meet.
     """
 
     start: Scene
@@ -175,6 +244,9 @@ class Identification(Shown):
     shift: float = 0.0
     measured_inputs: tuple[str, ...] = ()
     restarts: tuple[float, ...] = ()
+    predictions: tuple[Prediction, ...] = ()
+    alone: tuple[RunAlone, ...] = ()
+    disagreements: tuple[str, ...] = ()
 
     def _shown(self) -> Iterator[Part]:
         yield (f'Identification of {self.scene.name}: {len(self.estimates)} parameters, '

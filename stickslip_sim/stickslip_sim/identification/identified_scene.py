@@ -66,6 +66,7 @@ def measured_section(name: str, profile: InputProfile) -> dict[str, object]:
             f'{name}.{FORMS[name].values}': profile.values}
 
 
+IDENTIFIED_SCENE = 'identified.yaml'
 OF_SENSORS = 'sensor.'
 _BEYOND = 1e-3    # of the standard deviation: digits below it say nothing
 _DIGITS = 6       # or more

@@ -5,7 +5,7 @@
 import os
 import time
 from collections.abc import Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,7 +16,10 @@ from ..core.errors import InputError
 from ..inputs import SceneOrName, scene_of
 from ..recording import run_of
 from ..runs import Run
+from ..runs.report import named_apart
 from ..scene import Scene, changed
+from ..scene.load import named
+from ..study.variation import changes_at
 from .axis_model import AxisModel
 from .certainty import (
     QUANTILE,
@@ -41,6 +44,8 @@ from .identified import (
     Estimate,
     Identification,
     LawFit,
+    Prediction,
+    RunAlone,
     SlipFit,
     StartEnd,
 )
@@ -49,9 +54,11 @@ from .least_squares import square_cost
 from .many_fits import Keeper, fits_from
 from .motions import MeasuredMotion, motions_of, track_of
 from .other_laws import CRITERION, along_the_run, best_of_slips, criterion_of, with_laws
-from .readings import SensorReadings, drives_directly, readings_of, travelled
+from .prediction import check_is_moved, predict
+from .readings import SensorReadings, check_distinct, drives_directly, readings_of, travelled
 from .residual_tests import correlation_length, inflation_of, misfits_of_fit
 from .run_start import from_measured_start
+from .several_runs import RunFit, disagreements, is_own, joint_ends
 from .slip_features import shown_break_away
 from .stages import Ended, StageProgress, best_fit, starts_of
 
@@ -67,8 +74,12 @@ _ALONG = ('the model does not fit sample by sample: of what they leave open, num
 _WHOLE, _SINGLE = 'fit of the whole run', 'fit of single slips, each from a measured arrest'
 
 
-def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], began: float) -> Identification:
-    """Return what was found; `ends` are those of all starts, the best first, `began` when the work did, s."""
+def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], began: float,
+                      is_joint: bool = False) -> Identification:
+    """Return what was found; `ends` are those of all starts, the best first, `began` when the work did, s.
+
+    An end that `is_joint` has what other runs say in it, too, and is inflated already.
+    """
     best = ends[0]
     point = best.solution.point
     problem.take_input_noise_of(problem.values(point))
@@ -82,14 +93,14 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     information = best.solution.information
     changes = changes_by_inputs(problem, point) if best.of_slips is None else []
     more = more_by_inputs(problem, changes)
-    inflation = inflation_of(problem, fitted) if best.of_slips is None else max(best.of_slips, 1.0)
+    inflation = 1.0 if is_joint else inflation_of(problem, fitted) if best.of_slips is None else max(best.of_slips, 1.0)
     of_readings = certainty_of(information, inflation, problem.parameters)
-    by_inputs = covariance_by_inputs(problem, best.solution, changes)
+    by_inputs = covariance_by_inputs(problem, best.solution, [] if is_joint else changes)
     known = of_readings._replace(covariance=of_readings.covariance + by_inputs)
     values = problem.values(point)
     misfits = misfits_of_fit(problem, fitted, more)
     estimates = _estimates(problem, values, known, _WHOLE if best.of_slips is None else _SINGLE)
-    if best.of_slips is None and not misfits:
+    if best.of_slips is None and not misfits and not is_joint:
         estimates = with_profile_intervals(estimates, problem, best.solution, of_readings, inflation)
         estimates = tuple(map(_widened, estimates, problem.parameters, np.sqrt(np.diag(by_inputs))))
     if misfits:
@@ -233,23 +244,58 @@ def check_data(parameters: Sequence[FreeParameter], measurement: SensorReadings,
                              f'{most:g} N', 'look at its unit, or free sensor.drive_force.scale')
 
 
-def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | Path | Mapping[str, object], *,
+Given = Run | str | os.PathLike[str]
+
+
+def identify(run: Given | Sequence[Given], start: SceneOrName, free: str | Path | Mapping[str, object], *,
              resolutions: Mapping[str, float] | None = None, seed: int = 0, workers: int = 1,
-             laws: bool = False, progress: StageProgress | None = None, keeper: Keeper | None = None) -> Identification:
-    """Return the scene that reproduces a measured or recorded run, found from the scene `start`.
+             laws: bool = False, progress: StageProgress | None = None, keeper: Keeper | None = None,
+             test: Sequence[Given] = (), each: Sequence[str] = ()) -> Identification:
+    """Return the scene that reproduces a measured or recorded run, or several, found from the scene `start`.
 
     `free` is a file as `uncertainty --with` takes it, or its section of parameters, and names beside parameters of the
     scene `sensor.CHANNEL.offset` and `sensor.CHANNEL.scale`.  `resolutions` are standard deviations of the noise by
     channel, in its unit, where they are known.  `progress` is called with a stage and the share of it that is done.
     With `laws` the run is fitted with other laws of friction, too, and a criterion says which is best.  Fits from
     several starts are shared out to `workers` processes, and kept by a `keeper`, if there is one.
-    What is not known of the start of the run is taken from it, and noted.  Raises InputError and RecordingError.
+    What is not known of the start of the run is taken from it, and noted.  Several runs share all numbers but their
+    start, the offsets and delays of their sensors, and free parameters that `each` run has of its own.  The scene is
+    held against each `test` run, as `predict` does.  Raises InputError and RecordingError.
     """
     began = time.perf_counter()
     say = progress or (lambda stage, share: None)
     scene = scene_of(start)
     parameters = free_parameters(scene, free)
-    measurement = readings_of(run_of(run), scene, resolutions or {})
+    runs = [*map(run_of, run)] if isinstance(run, Sequence) and not isinstance(run, str) else [run_of(run)]
+    tests = [*map(run_of, test)]
+    check_distinct([*runs, *tests])
+    _check_several(runs, parameters, each, laws)
+    problems, ends = [], []
+    for one in runs:
+        with named(one.name) if len(runs) > 1 else nullcontext():
+            problems.append(_problem(one, scene, parameters, resolutions or {}))
+    for one in tests:
+        with named(one.name):
+            _check_test(scene, problems[0].measurement, one)
+    for k, problem in enumerate(problems):
+        name = f'run_{k}_fit' if k else 'fit'
+        with closing(fits_from(problem, starts_of(problem, seed), workers, keeper, name)) as fits:
+            found = best_fit(fits, say)
+        problem.model.take_tolerance(found[0].tolerance)
+        ends.append(best_of_slips(problem, along_the_run(problem, found)))
+    if len(runs) > 1:
+        identified = _of_several([*named_apart(runs)], problems, ends, each, began)
+    else:
+        identified = identification_of(problems[0], problems[0].model.scene, ends[0], began)
+        identified = with_laws(identified, problems[0], workers, keeper, say) if laws else identified
+    also = [_along(identified, one, own.own) for one, own in zip(runs[1:], identified.alone[1:])]
+    return replace(identified, predictions=(*also, *(predict(identified, one) for one in tests)))
+
+
+def _problem(run: Run, scene: Scene, parameters: tuple[FreeParameter, ...], resolutions: Mapping[str, float]
+             ) -> FitProblem:
+    """Return what is sought in a run, its start with it; raises InputError."""
+    measurement = readings_of(run, scene, resolutions)
     motions = motions_of(track_of(measurement, measurement.drive or scene.drive))
     check_parameters(parameters, measurement)
     check_data(parameters, measurement, motions, scene)
@@ -258,10 +304,63 @@ def identify(run: Run | str | os.PathLike[str], start: SceneOrName, free: str | 
     if drives_directly(scene):
         parameters, measurement = with_delay(parameters, measurement, scene.axis.mass)
         measurement = with_quiet_rests(measurement, motions)
-    model = AxisModel(scene, parameters, measurement)
-    problem = FitProblem(model, parameters, measurement, motions)
-    with closing(fits_from(problem, starts_of(problem, seed), workers, keeper)) as fits:
-        ends = best_fit(fits, say)
-    model.take_tolerance(ends[0].tolerance)
-    identified = identification_of(problem, scene, best_of_slips(problem, along_the_run(problem, ends)), began)
-    return with_laws(identified, problem, workers, keeper, say) if laws else identified
+    return FitProblem(AxisModel(scene, parameters, measurement), parameters, measurement, motions)
+
+
+def _check_several(runs: Sequence[Run], parameters: Sequence[FreeParameter], each: Sequence[str], laws: bool) -> None:
+    """Raise InputError on what several runs cannot have, or one alone."""
+    names = [one.name for one in parameters]
+    for name in each:
+        if name not in names:
+            raise InputError('each', name, f'a free parameter: {", ".join(names)}', 'name one, or leave it out')
+    if each and len(runs) == 1:
+        raise InputError('each', each[0], 'left out with one run', 'give several runs, or drop it')
+    if not runs or (laws and len(runs) > 1):
+        raise InputError('RUN', len(runs), 'one run where other laws are fitted, else one or more', 'give one run')
+
+
+def _of_several(names: Sequence[str], problems: Sequence[FitProblem], ends: Sequence[Sequence[Ended]],
+                each: Sequence[str], began: float) -> Identification:
+    """Return what was found in several runs at once, and what each says alone."""
+    alone = [identification_of(problem, problem.model.scene, end, began)
+             for problem, end in zip(problems, ends, strict=True)]
+    joint = joint_ends([RunFit(problem, end[0]) for problem, end in zip(problems, ends, strict=True)], each)
+    found = identification_of(problems[0], problems[0].model.scene, joint[:1], began, is_joint=True)
+    misfits = list(found.misfits)
+    cost, own = found.cost, []
+    for k, (name, problem, end) in enumerate(zip(names, problems, joint, strict=True)):
+        values = problem.values(end.solution.point)
+        own.append({one.name: float(value) for one, value in zip(problem.parameters, values, strict=True)
+                    if is_own(one.name, each)})
+        if k > 0:
+            problem.take_input_noise_of(values)
+            fitted = problem.fitted(end.solution.point, problem.stretches(None if end.of_slips is None else 0))
+            assert fitted is not None
+            more = more_by_inputs(problem, changes_by_inputs(problem, end.solution.point))
+            misfits += [replace(one, channel=f'{one.channel} of {name}', statement=f'{name}: {one.statement}')
+                        for one in misfits_of_fit(problem, fitted, more)]
+            cost += square_cost(problem.of_run()(end.solution.point))
+    is_free = any(one.name == 'axis.normal_force' for one in problems[0].parameters)
+    said = tuple(RunAlone(name, one.fits, one.estimates, numbers)
+                 for name, one, numbers in zip(names, alone, own, strict=True))
+    apart = disagreements(said, each, None if is_free else problems[0].model.scene.axis.normal_force)
+    return replace(
+        found, misfits=tuple(misfits), estimates=tuple(map(_void, found.estimates)) if misfits else found.estimates,
+        cost=cost, n_residuals=sum(one.n_residuals for one in alone), runs=sum(one.model.runs for one in problems),
+        notes=(*found.notes, f'{len(names)} runs share one scene; pictures and numbers of its own are of {names[0]}'),
+        alone=said, disagreements=tuple(apart))
+
+
+def _along(found: Identification, run: Run, own: Mapping[str, float]) -> Prediction:
+    """Return the scene along another run that was fitted, with the numbers that this has of its own."""
+    names = [name for name in own if not name.startswith(('sensor.', 'initial.'))]
+    values = changes_at(found.scene.values, names, np.array([own[name] for name in names]))
+    along = predict(replace(found, scene=changed(found.scene, values)), run)
+    return replace(along, notes=('it was fitted, too: no test of the scene', *along.notes))
+
+
+def _check_test(scene: Scene, measurement: SensorReadings, run: Run) -> None:
+    """Raise InputError, before the work begins, on a run that the scene found cannot be held against."""
+    inputs = {'drive': measurement.drive, 'force': measurement.force}
+    check_is_moved(scene, 'the run to identify', [name for name, own in inputs.items() if own is not None], run)
+    readings_of(run, scene, {})

@@ -29,6 +29,7 @@ from ..study.folder import KEPT
 from ..study.sweep import processes
 from .fit_problem import FitProblem
 from .least_squares import Solution
+from .readings import hash_of
 from .stages import Ended, fit_from
 
 _Arrays = Mapping[str, Numbers]
@@ -59,11 +60,12 @@ class _Fitted(NamedTuple):
     runs: int
 
 
-def fits_from(problem: FitProblem, starts: Iterator[Numbers], workers: int, keeper: Keeper | None
+def fits_from(problem: FitProblem, starts: Iterator[Numbers], workers: int, keeper: Keeper | None, name: str = 'fit'
               ) -> Generator[Ended, None, None]:
     """Yield the fit from each start, in their order; the first is made alone, for it may be good enough."""
-    yield from kept_fits([KeyedFit('fit_0', problem, next(starts))], 1, keeper)
-    yield from kept_fits([KeyedFit(f'fit_{k}', problem, start) for k, start in enumerate(starts, 1)], workers, keeper)
+    keyed = (KeyedFit(f'{name}_{k}', problem, start) for k, start in enumerate(starts))
+    yield from kept_fits([next(keyed)], 1, keeper)
+    yield from kept_fits([*keyed], workers, keeper)
 
 
 def kept_fits(fits: Sequence[KeyedFit], workers: int, keeper: Keeper | None) -> Generator[Ended, None, None]:
@@ -117,13 +119,9 @@ _FORM = 'stickslip identification 1'
 _LONGEST = 1 << 24   # bytes of a description
 
 
-def facts_of(run: Run, start: Scene, free: str) -> dict[str, Any]:
+def facts_of(runs: Sequence[Run], start: Scene, free: str) -> dict[str, Any]:
     """Return what an identification is of, by hashes of the readings, the scene and the text of what is free."""
-    readings = hashlib.sha256()
-    for name, column in sorted(run.samples.items()):
-        readings.update(name.encode())
-        readings.update(np.ascontiguousarray(column, dtype=np.float64).tobytes())
-    return {'form': _FORM, 'run': readings.hexdigest(), 'scene': start.hash,
+    return {'form': _FORM, 'run': ' '.join(map(hash_of, runs)), 'scene': start.hash,
             'free': hashlib.sha256(free.encode()).hexdigest(), 'versions': versions()}
 
 

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The measured run that an identification starts from: channels over time, and the inputs where they were measured."""
 
+import hashlib
 import math
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -17,7 +18,7 @@ from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile, Sinusoid
 from ..core.time_grid import Instants
-from ..recording.measured_run import MeasuredRun
+from ..recording import MeasuredRun
 from ..runs import Run
 from ..scene import Scene
 
@@ -297,6 +298,26 @@ def instants_of(times: Numbers) -> Instants:
     return Instants(seconds, times - seconds)
 
 
+def hash_of(run: Run) -> str:
+    """Return a hash of the readings of a run."""
+    readings = hashlib.sha256()
+    for name, column in sorted(run.samples.items()):
+        readings.update(name.encode())
+        readings.update(np.ascontiguousarray(column, dtype=np.float64).tobytes())
+    return readings.hexdigest()
+
+
+def check_distinct(runs: Sequence[Run]) -> None:
+    """Raise InputError where a run is there twice: it would count its noise twice, or predict itself."""
+    seen: dict[str, str] = {}
+    for run in runs:
+        own = hash_of(run)
+        if own in seen:
+            raise InputError('RUN', run.name, f'another run than {seen[own]}: its readings are the same',
+                             'give it once')
+        seen[own] = run.name
+
+
 def readings_of(run: Run, scene: Scene, resolutions: Mapping[str, float]) -> SensorReadings:
     """Return what a run measured, with stated `resolutions` (standard deviations) by channel; raises InputError."""
     columns = {name: np.asarray(values, dtype=np.float64) for name, values in run.samples.items()}
@@ -314,6 +335,8 @@ def readings_of(run: Run, scene: Scene, resolutions: Mapping[str, float]) -> Sen
     channels = tuple(_channel(name, columns[name], resolutions.get(name)) for name in outputs)
     _check_motion(channels)
     notes = [f'time {shift:g} s of the measurement is the start of the simulation'] if shift else []
+    if not keep.all():
+        notes.append(f'{len(keep) - len(times)} of {len(keep)} readings are left out: one of their numbers is missing')
     force = columns['drive_force'] if as_force else columns['external_force'] if 'external_force' in known else None
     of_drive, of_force = _drive(columns, known, times, scene, notes), _force(force, times, scene)
     return SensorReadings(times, shift, period, channels, of_drive and of_drive.profile(),

@@ -15,11 +15,13 @@ import numpy as np
 from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..plots.characteristics import Band, KnownFriction
-from ..report.html import folded, html_page, html_table
+from ..report.html import folded, html_of, html_page, html_table
 from ..report.quantity import quantity
-from ..report.values import versions
+from ..report.text import text_lines
+from ..report.values import plain, versions
 from .identified import FOUND, LEVEL, VOID, ChannelFit, Estimate, Identification, LawFit, Misfit, StartEnd
 from .identified_scene import OF_SENSORS, interval_words, number_words
+from .prediction_report import CAPTION, prediction_parts, prediction_values
 
 _CAPTIONS = {
     'fit': 'The fitted motion (thin) over the measured one (thick, grey): the whole run, and two cycles of it '
@@ -61,8 +63,10 @@ def result_lines(found: Identification, run: str) -> Iterator[str]:
         kind = '' if one.kind in (FOUND, VOID) else f', {one.kind}'
         yield f'{one.name:{_NAME}}{start:>{_NUMBER}}{value:>{_NUMBER}}   {interval_words(one)}{kind}'
     yield from (f'not separated: {together.statement}' for together in found.combinations)
+    yield from found.disagreements
     yield from _slip_lines(found)
     yield from _law_lines(found)
+    yield from text_lines(part for one in found.predictions for part in prediction_parts(one, one.run))
     elsewhere = sum(one.cost > _ELSEWHERE * _starts(found)[0].cost for one in found.starts)
     if elsewhere:
         yield (f'{elsewhere} of {len(found.starts)} starts ended elsewhere, with a larger sum of squares: report.html '
@@ -105,7 +109,10 @@ def report_page(found: Identification, run: str, start: str, pictures: Mapping[s
     """Return the page; `pictures` are parts of HTML by the names that `caption` takes."""
     title = f'{found.scene.name}, identified from {run}'
     body = [f'<h1>{escape(title)}</h1>', _verdict(found), *_facts(found, run, start), _estimate_table(found.estimates),
-            *_open(found), *(pictures[name] for name in _ORDER), _channel_table(found), _slip_table(found),
+            *_alone(found), *_open(found), *(pictures[name] for name in _ORDER), _channel_table(found),
+            _slip_table(found),
+            *(html_of(part) + pictures[f'prediction_{k}'] for k, one in enumerate(found.predictions)
+              for part in prediction_parts(one, one.run)),
             pictures['correlations'], *_law_table(found), *_start_table(found)]
     body.append(f'<p class="other">{escape(", ".join(f"{name} {version}" for name, version in versions.items()))}</p>')
     return html_page(title, body)
@@ -113,7 +120,7 @@ def report_page(found: Identification, run: str, start: str, pictures: Mapping[s
 
 def caption(name: str) -> str:
     """Return the text below a picture."""
-    return _CAPTIONS[name]
+    return _CAPTIONS.get(name, CAPTION)
 
 
 def _verdict(found: Identification) -> str:
@@ -147,6 +154,18 @@ def _estimate_table(estimates: Sequence[Estimate]) -> str:
             for one in estimates]
     return html_table('Parameters: where the search began, what was found, and the 95 % interval', [
         '', 'start', 'value', 'change', 'interval', 'interval by', 'kind', 'from'], rows)
+
+
+def _alone(found: Identification) -> Iterator[str]:
+    """Yield what each of several runs says by itself, and where they disagree."""
+    if found.alone:
+        names = [one.name for one in found.alone[0].estimates if one.name in found.values]
+        by_name = [{one.name: one for one in run.estimates} for run in found.alone]
+        rows = [[name, *(f'{number_words(own[name].value, own[name].unit)} ({interval_words(own[name])})'
+                         if name in own else '–' for own in by_name)] for name in names]
+        rows.append(['fits alone', *('yes' if run.fits else 'no' for run in found.alone)])
+        yield html_table('What each run says by itself', ['', *(run.run for run in found.alone)], rows)
+        yield from (f'<p class="fails">{escape(one)}</p>' for one in found.disagreements)
 
 
 def _open(found: Identification) -> Iterator[str]:
@@ -260,7 +279,10 @@ def report_values(found: Identification, run: str, start: str, friction: Mapping
         'slips': [asdict(one) for one in found.slips], 'friction': _friction(next(iter(friction.values()))),
         'friction_backward': _friction(friction['backward']) if 'backward' in friction else None, 'cost': found.cost,
         'residuals': found.n_residuals, 'runs': found.runs, 'seconds': found.seconds, 'notes': list(found.notes),
-        'restarts': list(found.restarts), 'versions': versions(),
+        'restarts': list(found.restarts), 'predictions': plain(prediction_values(found.predictions)),
+        'alone': [{'run': one.run, 'fits': one.fits, 'own': one.own, 'estimates': [*map(_estimate, one.estimates)]}
+                  for one in found.alone],
+        'disagreements': list(found.disagreements), 'versions': versions(),
     })
     return values
 

@@ -4,6 +4,7 @@
 
 import json
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -12,30 +13,31 @@ from ..plots.identified_motion import FittedChannel, plot_correlations, plot_fit
 from ..report.html import figure
 from ..runs import Run
 from .identified import ChannelFit, Identification
-from .identified_scene import identified_text, input_texts, posterior_text
+from .identified_scene import IDENTIFIED_SCENE, identified_text, input_texts, posterior_text
 from .measured_friction import known_friction, phases, slip_share, usual_cycles
+from .prediction_report import draw_prediction
 from .report import IDENTIFIED_VALUES, caption, report_page, report_values
 
-IDENTIFIED_SCENE, POSTERIOR = 'identified.yaml', 'posterior.yaml'
+POSTERIOR = 'posterior.yaml'
 IDENTIFIED_PAGE = 'report.html'
 _WHOLE = 0.99   # of a run: so long a stretch is all of it
 
 
-def write_results(run: Run, found: Identification, start: str, folder: Path) -> None:
+def write_results(run: Run, found: Identification, start: str, folder: Path, name: str | None = None) -> None:
     """Write the four files into a folder that exists, and inputs that were measured beside them.
 
-    `start` is the scene that was given, as it was named.
+    `start` is the scene that was given, as it was named; `name` that of several runs, of which `run` is the first.
 
     Raises OSError when the disk refuses.
     """
-    start = Path(start).name
+    start, name = Path(start).name, name or run.name
     friction = known_friction(run, found)
-    values = report_values(found, run.name, start, friction)
-    page = report_page(found, run.name, start, _pictures(found, friction), values['versions'])
+    values = report_values(found, name, start, friction)
+    page = report_page(found, name, start, _pictures(found, friction), values['versions'])
     for name, text in input_texts(found).items():
         (folder / name).write_text(text, encoding='utf-8')
-    (folder / IDENTIFIED_SCENE).write_text(identified_text(found, run.name, start), encoding='utf-8')
-    (folder / POSTERIOR).write_text(posterior_text(found, run.name), encoding='utf-8')
+    (folder / IDENTIFIED_SCENE).write_text(identified_text(found, name, start), encoding='utf-8')
+    (folder / POSTERIOR).write_text(posterior_text(found, name), encoding='utf-8')
     (folder / IDENTIFIED_VALUES).write_text(json.dumps(values, indent=1, allow_nan=False) + '\n', encoding='utf-8')
     (folder / IDENTIFIED_PAGE).write_text(page, encoding='utf-8')
 
@@ -50,6 +52,8 @@ def _pictures(found: Identification, friction: Mapping[str, KnownFriction]) -> d
         'friction': lambda path: plot_known_friction(friction, path),
         'correlations': lambda path: plot_correlations(names, found.correlation, path),
     }
+    for k, one in enumerate(found.predictions):
+        drawn[f'prediction_{k}'] = partial(draw_prediction, one)
     with TemporaryDirectory() as folder:
         return {name: _picture(Path(folder) / f'{name}.svg', draw) for name, draw in drawn.items()}
 

@@ -72,7 +72,8 @@ def plot_friction_fits(points: MeasuredPoints, lines: Sequence[FittedLine], head
 def _curves(panel: Axes, points: MeasuredPoints, speeds: Numbers, lines: Sequence[FittedLine], log: bool) -> None:
     many = len(points.speeds) > _FEW
     if points.spread is not None:
-        panel.vlines(_shown(points.speeds, points, log), *points.spread, color=style.GREY, linewidth=0.7, label='quartiles')
+        panel.vlines(_shown(points.speeds, points, log), *points.spread, color=style.GREY, linewidth=0.7,
+                     label='quartiles')
     for chosen, face, label in _directions(points):
         panel.plot(_shown(points.speeds[chosen], points, log), points.coefficients[chosen], 'o', label=label,
                    zorder=1.5 if many else 4.0, markersize=_size(points), markerfacecolor=face,

@@ -74,6 +74,32 @@ def plot_residuals(channels: Sequence[FittedChannel], slip_share: float, path: P
         _finish(figure, rows, ('time / s', 'phase of the cycle'), path)
 
 
+class PredictedChannel(NamedTuple):
+    """A channel over `times` (s), measured and predicted, in `unit`."""
+
+    name: str
+    unit: str
+    times: Numbers
+    measured: Numbers
+    predicted: Numbers
+
+
+def plot_prediction(channels: Sequence[PredictedChannel], path: Path | str) -> None:
+    """Draw a row for each channel: measured and predicted over the whole run, and measured less predicted."""
+    with _figure(len(channels), share=False) as (figure, rows):
+        for (motion, left), channel in zip(rows, channels):
+            scale, unit = _SCALES.get(channel.unit, (1.0, channel.unit))
+            measured, predicted = scale * channel.measured, scale * channel.predicted
+            motion.plot(*thinned(channel.times, measured), color=GREY, linewidth=2.4, alpha=0.5, label='measured')
+            motion.plot(*thinned(channel.times, predicted), color=BLUE, linewidth=0.9, label='predicted')
+            left.axhline(0.0, color=BLACK, linewidth=0.6)
+            left.plot(*thinned(channel.times, measured - predicted), color=ORANGE, linewidth=0.6,
+                      label='measured less predicted')
+            motion.set_ylabel(labelled(in_words(channel.name), unit))
+            left.set_ylabel(labelled('residual', unit))
+        _finish(figure, rows, ('time / s', 'time / s'), path)
+
+
 @contextmanager
 def _figure(count: int, share: bool) -> Iterator[tuple[Figure, Sequence[Sequence[Axes]]]]:
     """Yield a figure with two panels for each channel, which `share` the upright axis or not."""

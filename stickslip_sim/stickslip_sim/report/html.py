@@ -30,7 +30,7 @@ td.number, th.number { white-space: normal } th, td { padding: 0.15em 0.4em; ove
 def write_page(folder: Path, title: str, parts: Iterable[Part], values: Any) -> None:
     """Write a report into a folder as `report.html`, and the values behind it as `report.json`; raises OSError."""
     (folder / 'report.json').write_text(json_text(values), encoding='utf-8')
-    (folder / 'report.html').write_text(html_page(title, [f'<h1>{escape(title)}</h1>', *map(_html, parts)]),
+    (folder / 'report.html').write_text(html_page(title, [f'<h1>{escape(title)}</h1>', *map(html_of, parts)]),
                                         encoding='utf-8')
 
 
@@ -74,17 +74,18 @@ class Shown:
         return f'<{next(iter(self._shown()))}>'
 
     def _repr_html_(self) -> str:
-        return html_of(self._shown())
+        return parts_as_html(self._shown())
 
 
-def html_of(parts: Iterable[Part]) -> str:
+def parts_as_html(parts: Iterable[Part]) -> str:
     """Return parts as HTML, without a page around them."""
-    return '\n'.join(map(_html, parts))
+    return '\n'.join(map(html_of, parts))
 
 
-def _html(part: Part) -> str:
+def html_of(part: Part) -> str:
+    """Return a part of a report as HTML."""
     if isinstance(part, Section):
-        return '\n'.join([f'<h2>{escape(part.title)}</h2>', *map(_html, part.parts)])
+        return '\n'.join([f'<h2>{escape(part.title)}</h2>', *map(html_of, part.parts)])
     if isinstance(part, Table):
         return html_table(part.caption, part.heads, part.rows, part.texts)
     return figure(part.path, part.caption) if isinstance(part, Picture) else _cell('p', part)

@@ -1,0 +1,46 @@
+# Copyright 2026 The stickslip authors
+# SPDX-License-Identifier: Apache-2.0
+"""`stickslip predict`: a scene driven by the measured input of runs that it was not identified from."""
+
+from pathlib import Path
+
+import click
+
+from . import completion
+from .arguments import SceneChanges, recorded_run, scene_changes, verb
+from .files import FOLDER, new_folder, progress_bar, say_written, show
+
+
+@verb(short_help='Hold a scene against measured runs it has not seen.')
+@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@click.argument('runs', nargs=-1, required=True, metavar='RUN...', shell_complete=completion.complete_folders)
+@click.option('--out', type=FOLDER, metavar='FOLDER', help='New folder for the report and the pictures.')
+@scene_changes('Change a parameter of the scene.')
+def predict(scene: str, runs: tuple[str, ...], out: str | None, changes: SceneChanges) -> None:
+    """Drive SCENE by what each RUN measured of its drive and force, and say how far it is off.
+
+    Offset and delay of the sensors and the start of the run are found, the physics stays: root mean square error, fit
+    in % (100 (1 − |error| / |measured − mean|)), largest error.  Beside an identified.yaml its report.json says what
+    is known of the sensors.
+    """
+    from ..identification.prediction import known_sensors, predicted
+    from ..identification.prediction_report import prediction_parts, write_predictions
+    from ..identification.readings import check_distinct
+    from ..runs.report import named_apart
+    from ..scene.load import named
+
+    made, known = changes.load(scene), known_sensors(scene)
+    given = [recorded_run(run) for run in runs]
+    check_distinct(given)
+    found = {}
+    with progress_bar('predicting') as progress:
+        for name, run in named_apart(given).items():
+            with named(name):
+                found[name] = predicted(made, scene, known, run)
+            if progress:
+                progress(len(found) / len(given))
+    show([part for name, one in found.items() for part in prediction_parts(one, name)])
+    if out is not None:
+        with new_folder('--out', out) as folder:
+            write_predictions(found, folder)
+        say_written(str(Path(out) / 'report.html'))
