@@ -144,7 +144,7 @@ class TestWhatIf:
             words.extend(text.get_text() for text in figure.findobj(Text))
             save(figure, path)
 
-        monkeypatch.setattr('stickslip_sim.plots.overlay.save', look)
+        monkeypatch.setattr('stickslip_sim.plots.style.save', look)
         out = tmp_path / 'out'
         settings = ('--set', 'axis.normal_force=3000.0', '--set', 'drive.velocity=0.003')
         code, report, _ = verified(capsys, fig8_bag, *settings, '--out', out)

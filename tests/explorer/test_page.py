@@ -17,7 +17,7 @@ from stickslip_sim.explorer.page import page_of
 from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.scene import scene_names
 from stickslip_sim.scene.values import scene_text
-from tests.support.tool import Capture, answered
+from tests.support.tool import Capture, answered, refused
 
 pytestmark = [
     pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code'),
@@ -222,6 +222,18 @@ def test_a_measured_run_lies_behind(browser: Browser, tmp_path: Path) -> None:
     for name in ('position', 'velocity'):
         assert browser.ask(drawn.replace('NAME', name))[0] == 'measured'
     assert 'measured' not in browser.ask(drawn.replace('NAME', 'force'))
+
+
+def test_the_tool_writes_the_page_with_a_measured_run_or_says_why_not(tmp_path: Path, capsys: Capture) -> None:
+    out, csv = tmp_path / 'page.html', tmp_path / 'measured.csv'
+    csv.write_text('time,velocity\n0.0,0.0\n1.0,0.002\n', encoding='utf-8')
+    assert answered(capsys, 'explore', 'paper_fig8', '--beside', csv, '--out', out)[:2] == (0, f'written: {out}\n')
+    assert '"beside":{"time":[0.0,1.0],"velocity":[0.0,0.002]}' in out.read_text(encoding='utf-8')
+    csv.write_text('time,mass\n0.0,1.0\n1.0,2.0\n', encoding='utf-8')
+    assert '--beside = ' in refused(capsys, 'explore', 'paper_fig8', '--beside', csv, '--out', out)
+    for change in ('solver.name=fixed_step', 'normal_load.course=constant', 'friction.scale=0.5',
+                   'friction.static.backward.initial=0.13'):
+        assert 'must be left out of a page' in refused(capsys, 'explore', 'paper_fig8', '--set', change, '--out', out)
 
 
 def test_a_phone_has_all_in_its_width(page: Browser) -> None:

@@ -269,6 +269,7 @@ CALLS: dict[str, Callable[[SceneOrPath], object]] = {
     'close_loops': lambda scene: repr(
         stickslip.close_loops(creep, scene, 0.05, {'axis.mass': (50.0, 200.0, 2)}).columns),
     'critical': lambda scene: stickslip.critical(scene, 'axis.mass', (50.0, 200.0), 0.5),
+    'design': lambda scene: repr(stickslip.design(scene, ['axis.mass'], duration=0.5, speeds=(1e-2, 2e-2), rate=100.0)),
     'friction_curve': lambda scene: repr(stickslip.friction_curve(stickslip.simulate(scene, 0.5), scene=scene).columns),
     'identify': refusal_of_identify,
     'sensitivities': lambda scene: repr(stickslip.sensitivities(scene, ['event.1.time'], ['axis.drive_stiffness'])),
@@ -364,8 +365,8 @@ DRIVES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
     'rigol': ('X,CH1,CH2,Start,Increment,\nSequence,Volt,Volt,0.0,1.0e-03\n' + lines('{},{},{},,\n', str, str, str),
               {'time': 'X', 'position': 'CH1', 'drive_force': 'CH2'},
               {'time': '1 ms', 'position': '1 mm', 'drive_force': '-1 N'}),
-    'heidenhain': ('TNCscope V3\n\nZeit;s ist X;I soll X\n[ms];[mm];[A]\n' + lines('{};{};{};\n', str, comma, comma),
-                   {'time': 'Zeit', 'position': 's ist X', 'drive_force': 'I soll X'}, {'drive_force': '35.15 N'}),
+    'heidenhain': ('TNCscope V3\n\nZeit;Lage X;Strom X\n[ms];[mm];[A]\n' + lines('{};{};{};\n', str, comma, comma),
+                   {'time': 'Zeit', 'position': 'Lage X', 'drive_force': 'Strom X'}, {'drive_force': '35.15 N'}),
 }
 SCALES = {'startdrive': 2.0 * np.pi, 'twincat 3': 8.0, 'rigol': -1.0, 'heidenhain': 35.15}
 

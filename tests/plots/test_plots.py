@@ -20,7 +20,7 @@ from stickslip_sim.compare.look import drawn_motion
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.types import Mode
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.plots import paper_panels, plot_run
+from stickslip_sim.plots import paper_panels, plot_run, style
 from stickslip_sim.plots.friction_fits import FittedLine, MeasuredPoints, plot_friction_fits, plot_speeds
 from stickslip_sim.plots.run import BINS, DrawnRun, TimeWindow, band, bin_edges, drawn_run, mode_shares
 from stickslip_sim.plots.style import legend_outside, thinned
@@ -118,10 +118,11 @@ def test_a_pdf_has_letters_and_no_bitmaps_of_them(tmp_path: Path) -> None:
 
 def test_a_long_name_stays_clear_of_letters_and_of_the_edge(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shown: list[Figure] = []
-    monkeypatch.setattr(paper_panels, 'save', lambda figure, *paths: shown.append(figure))
+    monkeypatch.setattr(style, 'save', lambda figure, *paths: shown.append(figure))
     run = simulate_densely(load_scene('paper_fig7'), 2.0)
     names = 'axis_at_1.2_mm_s_' * 3, 'axis_at_1.2_mm_s_' * 12
     paper_panels.plot_side_by_side(dict.fromkeys(names, drawn_motion(run)), tmp_path / 'a.png')
+    monkeypatch.undo()
     (figure,) = shown
     figure.savefig(BytesIO())
     boxes = {text.get_text(): text.get_window_extent() for panel in figure.axes for text in panel.texts}

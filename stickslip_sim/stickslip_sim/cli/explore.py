@@ -23,6 +23,7 @@ def explore(scene: str, out: str, beside: str | None, changes: SceneChanges) -> 
 
     A slider moves, the exact engine runs, the picture follows; "Copy scene" gives the scene for the tool and the node.
     """
+    from ..core.errors import InputError
     from ..explorer.page import COLUMNS, page_of, thinned
 
     loaded = changes.load(scene)
@@ -33,7 +34,11 @@ def explore(scene: str, out: str, beside: str | None, changes: SceneChanges) -> 
 
         check_run(beside)
         names = heading_of(Path(beside))
-        measured = Measurement.from_file(beside, {name: name for name in COLUMNS if name in names})
+        shown = [name for name in COLUMNS if name in names]
+        if 'time' not in shown or len(shown) < 2:
+            raise InputError('--beside', beside, f'a CSV file with the columns time and {", ".join(COLUMNS[1:-1])} or '
+                             f'{COLUMNS[-1]}', 'name its columns so, or bring it in with stickslip import')
+        measured = Measurement.from_file(beside, {name: name for name in shown})
         columns = thinned({'time': measured.times, **measured.columns})
     elif beside is not None:
         columns = thinned(recorded_run(beside).samples)

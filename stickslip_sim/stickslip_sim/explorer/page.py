@@ -37,6 +37,9 @@ def page_of(scene: Scene, beside: Mapping[str, list[float]] | None = None) -> st
     if UNIT is None:
         raise InputError('hot path', hot_path(), 'compiled: it carries its script',
                          'build the package with a C compiler, and leave STICKSLIP_COMPILED=0 out')
+    for name, value in scene.values.items():
+        if _is_beyond(name, value):
+            raise InputError(name, value, 'left out of a page', 'docs/explore.md says what a page can run')
     data = json.dumps({
         'version': __version__, 'scene': scene_text(scene.values), 'beside': beside,
         'shipped': {one: _shipped(one) for one in scene_names()}, 'figures': asdict(AxisFigures()),
@@ -44,6 +47,13 @@ def page_of(scene: Scene, beside: Mapping[str, list[float]] | None = None) -> st
     }, ensure_ascii=False, separators=(',', ':')).replace('</', '<\\/').replace('<!--', '<\\!--')
     scripts = (zlib.decompress(UNIT.SCRIPT).decode(), f'const PAGE = {data};', *map(_text, _SCRIPTS))
     return _text('page.html').replace('/* STYLE */', _text('page.css')).replace('/* SCRIPT */', '\n'.join(scripts))
+
+
+def _is_beyond(name: str, value: object) -> bool:
+    """Return whether a page cannot run this; it says so itself of scenes that are opened there."""
+    only = {'solver.name': 'exact', 'friction.scale': 1.0}
+    return (value != only.get(name, value) or (name, value) == ('drive.course', 'position') or '.backward.' in name
+            or name in ('normal_load.course', 'faults.kinds'))
 
 
 def _entry(entry: Parameter) -> dict[str, Any]:

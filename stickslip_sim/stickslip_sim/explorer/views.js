@@ -210,7 +210,7 @@ class Scheme {
     if (!w || !run) return;
     const pen = new CanvasPen(this.over, w, h), {ink, dim, slider, drive, friction, fill} = COLOURS, scale = 0.2 * w / this.size;
     const ground = h - 44, tall = Math.min(74, ground - 34), wide = Math.min(0.2 * w, 130), x = 0.3 * w, end = x + wide / 2 + 0.22 * w + scale * run.stretch[index];
-    const sign = run.mode[index] === codes_STICK ? "sticks" : MODES[run.mode[index]];
+    const sign = run.mode[index] === codes_STICK ? "stick" : MODES[run.mode[index]];
     pen.rect(0, ground, w, 7, fill);
     const step = 24, offset = (((scale * run.position[index]) % step) + step) % step;
     for (let at = -offset; at < w + step; at += step) pen.line([at, ground + 7, at - 9, ground + 17], dim, 1);
@@ -231,7 +231,7 @@ class Scheme {
     this.arrow(pen, end + (goes < 0 ? 46 : 12), body + tall / 2, 34 * goes, drive);
     pen.text(run.axis.drive.count === 1 ? "drive" : "drive (profile)", Math.min(end - 4, w - 96), body - 8, ink);
     this.arrow(pen, x, body - 6, -0.2 * w * run.friction[index] / this.force, friction);
-    pen.text(`slider ${sign}`, x, body - 14, ink, "center");
+    pen.text(`slider: ${sign}`, x, body - 14, ink, "center");
     pen.text(`t = ${short(run.time[index])} s     ẋ = ${short(run.velocity[index] * MM, 3)} mm/s     friction ${short(run.friction[index], 3)} N`, 12, h - 8, ink);
   }
 

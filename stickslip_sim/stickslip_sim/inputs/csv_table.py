@@ -65,23 +65,20 @@ class Table:
         self.wanted = [one if place is None else in_unit_of(one, self._heading(place), [row[place] for row in units])
                        for one, place in zip(wanted, self._places, strict=True)]
         self._used = [place for place in self._places if place is not None]
-        blocks: list[list[Numbers]] = [[] for _ in wanted]
+        found = [np.empty(0) for _ in wanted]
         count = 0
         for block in self._blocks():
-            count += len(block)
+            begin, count = count, count + len(block)
             if count > most_rows:
                 raise InputError(option, name, f'at most {most_rows} rows', 'leave rows out: every second, or a part')
-            for column, numbers in zip(blocks, block.T, strict=True):
-                column.append(numbers.copy())
+            for column, numbers in zip(found, block.T, strict=True):
+                column.resize(count, refcheck=False)    # where it is: parts put together would need the room twice
+                column[begin:] = numbers
         if not count:
             raise InputError(option, name, _NONE, 'it has no numbers' if rows[:3] == ALL[:3] else 'there are none')
         if self._dropped:
             self.remarks.append(f'{self._dropped} bad rows are left out')
-        self.columns: list[Numbers] = []
-        for one, parts in zip(self.wanted, blocks, strict=True):
-            joined = np.concatenate(parts)
-            parts.clear()
-            self.columns.append(all_in_si(joined, one.in_si))
+        self.columns = [all_in_si(found.pop(0), one.in_si) for one in self.wanted]
 
     def _begin(self, wanted: Sequence[Wanted]) -> list[list[str]]:
         """Find headings and places; return lines between headings and numbers that have units."""
