@@ -27,7 +27,7 @@ from stickslip_sim.bags import topics
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.realtime.pacing import Pacer, wake_precisely
 from stickslip_sim.realtime.scheduling import Scheduling, StepThread
-from stickslip_sim.realtime.verdict import TimingStatistics
+from stickslip_sim.realtime.timing_statistics import TimingStatistics
 from stickslip_sim.recording import RECORDED, RecorderThread, RunFacts, open_run
 from stickslip_sim.ros.node.endpoints import publisher, set_stamp, subscription
 from stickslip_sim.ros.programs import make_executor

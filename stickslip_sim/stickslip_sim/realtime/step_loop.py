@@ -18,7 +18,7 @@ from ..simulation import Rig, StepResult
 from .commands import CommandInputs, CommandSlot, CommandTotals, Watchdog
 from .pacing import CoreShare, StepClock, wake_precisely
 from .scheduling import Scheduling, StepThread
-from .verdict import TimingStatistics
+from .timing_statistics import TimingStatistics
 
 _IDLE = 0.05            # s between two looks at whether to stop while time stands still
 _PATIENCE = 5.0         # s that a request waits for its boundary

@@ -15,7 +15,8 @@ from stickslip_msgs.msg import StepTiming
 from ...bags import topics
 from ...realtime.pacing import StepClock
 from ...realtime.step_loop import StepLoop
-from ...realtime.verdict import Refusal, Refusals, TimingVerdict, TimingWindow, Worst, verdict
+from ...realtime.timing_statistics import TimingWindow, Worst
+from ...realtime.verdict import Refusal, Refusals, TimingVerdict, verdict
 from ...recording.recordings import Recordings
 from ...runs.simulated import receipt_of
 from ...scene.model import Scene
