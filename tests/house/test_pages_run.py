@@ -49,7 +49,7 @@ def test_the_blocks_of_python(clone: Path, capsys: Capture) -> None:
     for block in re.findall(r'^```python\n(.*?)^```$', PYTHON, re.MULTILINE | re.DOTALL):
         exec(block, names)
         printed.append(capsys.readouterr().out)
-    assert len(printed) == 13
+    assert len(printed) == 14
     assert printed[1].startswith('stick-slip\nBREAKAWAY 0.7625675504')
     assert 'axis.mass = -1.0 is refused' in printed[-1]
     assert {path.name for path in clone.iterdir()} == {'examples', 'run.png', 'runs'}
@@ -127,7 +127,7 @@ class TestIdentification:
     @pytest.mark.usefixtures('blank_pictures')
     def test_the_commands_find_what_it_says(self, capsys: Capture) -> None:
         for name, commands in COMMANDS.items():
-            said = [done(capsys, command.replace('--samples 64', '--samples 8'))
+            said = [done(capsys, command.replace('--samples 64', '--samples 16'))
                     for command in commands if name != FAILS]    # that one takes a minute
             if name == 'synthetic':
                 printed, here = self.found_in(part_of(IDENTIFICATION, name)), self.found_in(said[-1])

@@ -272,6 +272,7 @@ CALLS: dict[str, Callable[[SceneOrPath], object]] = {
     'design': lambda scene: repr(stickslip.design(scene, ['axis.mass'], duration=0.5, speeds=(1e-2, 2e-2), rate=100.0)),
     'friction_curve': lambda scene: repr(stickslip.friction_curve(stickslip.simulate(scene, 0.5), scene=scene).columns),
     'identify': refusal_of_identify,
+    'predict': lambda scene: repr(stickslip.predict(scene, stickslip.simulate(scene, 0.5)).found),
     'sensitivities': lambda scene: repr(stickslip.sensitivities(scene, ['event.1.time'], ['axis.drive_stiffness'])),
     'simulate': lambda scene: run_of(stickslip.simulate(scene, 0.5, 0.1)),
     'simulate_events': lambda scene: run_of(stickslip.simulate_events(scene, 0.5)),
