@@ -11,12 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from hot_unit.javascript import script
-from hot_unit.unit import Unit
 from stickslip_sim.core import hot_path
 from tests.support.repository import ROOT
 
 PROJECT = ROOT / 'stickslip_sim'
+sys.path.append(str(PROJECT))    # what is installed comes before it, but has no hot_unit
+
+from hot_unit.javascript import script  # noqa: E402
+from hot_unit.unit import Unit  # noqa: E402
+
 PACKAGE = PROJECT / 'stickslip_sim'
 ROOMS = ('core', 'friction', 'linear', 'axis', 'solvers')
 HOST = 'linear/oscillator.py'
