@@ -20,6 +20,7 @@ from stickslip_sim.scene.values import scene_text
 from tests.support.tool import Capture, answered, refused
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code'),
     pytest.mark.skipif(PROGRAM is None, reason='no browser: apt install chromium'),
 ]

@@ -26,7 +26,7 @@ from stickslip_sim.scene import scene_names
 from stickslip_sim.simulation.plant import with_friction_scaled
 from stickslip_sim.simulation.simulator import Simulator
 
-pytestmark = [pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code'),
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code'),
               pytest.mark.filterwarnings('ignore::DeprecationWarning:lark')]
 LOAD = {'normal_load.course': 'sine', 'normal_load.constant': 500.0, 'normal_load.amplitude': 400.0,
         'normal_load.frequency': 7.0, 'drive.amplitudes': [5.0e-3, 2.0e-3], 'drive.frequencies': [3.0, 17.0]}

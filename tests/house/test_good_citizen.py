@@ -29,7 +29,7 @@ from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client
 from tests.support.waiting import wait_for
 
-pytestmark = pytest.mark.ros
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 PACKAGE = ROOT / 'stickslip_sim'
 TOPICS = [topic.resolved() for topic in RECORDED]

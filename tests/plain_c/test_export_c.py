@@ -17,8 +17,8 @@ from stickslip_sim.plain_c.c_files import NAMES
 from stickslip_sim.proof.axes import instant
 from stickslip_sim.simulation.simulator import Simulator
 
-pytestmark = pytest.mark.skipif(hot_path.UNIT is None or shutil.which('cc') is None,
-                                reason='no compiled code, or no C compiler')
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(hot_path.UNIT is None or shutil.which('cc') is None,
+                                                   reason='no compiled code, or no C compiler')]
 WARNINGS = '-std=c11', '-Wall', '-Wextra', '-Werror'
 DURATION = 3.25
 SINES = {'drive.amplitudes': [5.0e-3, 2.0e-3], 'drive.frequencies': [3.0, 17.0]}
@@ -98,9 +98,9 @@ def test_the_example_has_the_bits_of_the_engine(scene: str, changes: dict[str, A
 
 
 @pytest.mark.parametrize(('compiler', 'runner'), [
-    (('clang', '-O2'), ()), (('clang', '-O2', '-march=native'), ()),
+    (('clang', '-O2', '-march=native'), ()),
     (('aarch64-linux-gnu-gcc', '-O2', '-ffp-contract=off'), ('qemu-aarch64', '-L', '/usr/aarch64-linux-gnu'))],
-    ids=['clang', 'with contractions', 'aarch64'])
+    ids=['clang with fused products', 'aarch64'])
 def test_other_compilers_and_processors_have_the_same_bits(compiler: Sequence[str], runner: Sequence[str],
                                                            tmp_path: Path) -> None:
     missing = [name for name in (compiler[0], *runner[:1]) if shutil.which(name) is None]

@@ -17,7 +17,7 @@ from stickslip_sim.core import hot_path
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.plain_c.hal_files import HAL_NAMES
 
-pytestmark = pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code')
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code')]
 # What halcompile puts before the C of a component, with pins that are not shared; then commands of the standard input:
 # a pin and a number, or `step` and how many.
 STAND_IN = '''
