@@ -24,10 +24,10 @@ OLDEST_CYTHON = (3, 0, 8)
 FLAGS = ['-O3', '-g0', '-ffp-contract=off', '-fno-math-errno', '-fno-trapping-math', '-finline-limit=2000',
          '--param', 'inline-unit-growth=200', '--param', 'large-function-growth=1000']
 
-
+# The library of an FMU: small, since each file has a copy; it shows the functions of FMI alone.
+_FMU_FLAGS = ['-Os', '-g0', '-ffp-contract=off', '-fno-math-errno', '-fno-trapping-math', '-fvisibility=hidden']
 # What the package also runs without.  `text` needs a compiler of C++ that knows std::to_chars of floats; else Python
 # writes the numbers.
-_FMU_FLAGS = ['-Os', '-g0', '-ffp-contract=off', '-fno-math-errno', '-fno-trapping-math', '-fvisibility=hidden']
 _OTHERS = {'_text': 'cli/text.pyx', '_standstill': 'ros/standstill.pyx'}
 
 
