@@ -9,7 +9,7 @@ Everything is measured with the exact engine at 1 kHz, and is the same on every 
 
 import math
 import pathlib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import stickslip_sim as stickslip
@@ -29,10 +29,10 @@ AXIS = load_scene('positioning').axis
 MOVES = [Moves(travel, feed) for travel, feed in
          ((0.0005, 0.0001), (0.001, 0.0002), (0.002, 0.0005), (0.002, 0.001), (0.005, 0.002), (0.01, 0.01))]
 SLOW_FEED = Moves()
-DELAYS = (0, 1, 2, 3)
-RESOLUTIONS = (1e-8, 1e-7, 1e-6)   # m
+DELAYS = (2, 3)
+RESOLUTIONS = (1e-7, 1e-6)   # m
 GAINS = (2.0, 4.0, 8.0, 16.0, 25.0)
-WRONG = (('as in the model', 1.0, 1.0), ('normal force 20 % less', 0.8, 1.0), ('normal force 20 % more', 1.2, 1.0),
+WRONG = (('normal force 20 % less', 0.8, 1.0), ('normal force 20 % more', 1.2, 1.0),
          ('drive stiffness 20 % less', 1.0, 0.8), ('drive stiffness 20 % more', 1.0, 1.2))
 _MICRO, _MILLI = 1e6, 1e3
 RATE = 1000.0   # steps a second
@@ -136,58 +136,38 @@ def most_delay(gains: Cascade) -> int | None:
 
 def by_feed() -> Iterator[str]:
     """Yield the table over the feed."""
-    yield from _head('travel', 'feed', 'controller', 'sticks', 'largest error', 'speed at constant feed', 'overshoot',
-                     'error after the dwell')
+    yield from _head('move', 'sticks', 'largest error / µm', 'speed at constant feed / mm/s', 'overshoot / µm')
     for moves in MOVES:
-        for name, its in measure(moves).items():
-            yield _row(f'{moves.travel * _MILLI:g} mm', f'{moves.feed * _MILLI:g} mm/s', name, its.sticks,
-                       f'{its.largest_error * _MICRO:.0f} µm', _speeds(its), f'{its.overshoot * _MICRO:.0f} µm',
-                       f'{its.end_error * _MICRO:.1f} µm')
+        pair = [*measure(moves).values()]
+        yield _row(f'{moves.travel * _MILLI:g} mm at {moves.feed * _MILLI:g} mm/s', _pair(its.sticks for its in pair),
+                   _pair(f'{its.largest_error * _MICRO:.0f}' for its in pair), _pair(map(_speeds, pair)),
+                   _pair(f'{its.overshoot * _MICRO:.0f}' for its in pair))
 
 
-def by_gain() -> Iterator[str]:
-    """Yield the table over the velocity gain."""
-    yield from _head('K_p', 'damping ratio', 'stable up to a delay of / steps', 'feed', 'cascade', 'compensated')
+def by_condition() -> Iterator[str]:
+    """Yield the table over gain, delay, resolution of the encoders, and what the model gets wrong."""
+    yield from _head('changed', 'sticks', 'largest error / µm')
     damping = AXIS.drive_damping / (2.0 * (AXIS.drive_stiffness * AXIS.mass) ** 0.5)
     for gain in GAINS:
         gains = Cascade(velocity_gain=gain)
-        for moves in (MOVES[1], SLOW_FEED):
-            yield _row(f'{gain:g}', f'{damping * (1.0 + gain) ** 0.5:.2f}', most_delay(gains),
-                       f'{moves.feed * _MILLI:g} mm/s', *map(_brief, measure(moves, gains=gains).values()))
-
-
-def by_delay() -> Iterator[str]:
-    """Yield the table over the delay."""
-    yield from _head('delay / steps', 'feed', 'cascade', 'compensated')
-    for moves in (MOVES[1], SLOW_FEED):
-        for delay in DELAYS:
-            yield _row(delay, f'{moves.feed * _MILLI:g} mm/s', *map(_brief, measure(moves, delay).values()))
-
-
-def by_resolution() -> Iterator[str]:
-    """Yield the table over the resolution of both encoders."""
-    yield from _head('resolution', 'feed', 'cascade', 'compensated')
-    for moves in (MOVES[1], SLOW_FEED):
-        for resolution in RESOLUTIONS:
-            its = measure(moves, changes={'encoder.resolution': resolution})
-            yield _row(f'{resolution * _MICRO:g} µm', f'{moves.feed * _MILLI:g} mm/s', *map(_brief, its.values()))
+        yield _brief(f'K_p = {gain:g} ({damping * (1.0 + gain) ** 0.5:.2f}, {most_delay(gains)} steps)', gains=gains)
+    for delay in DELAYS:
+        yield _brief(f'commands {delay} steps late', delay)
+    for resolution in RESOLUTIONS:
+        yield _brief(f'encoders of {resolution * _MICRO:g} µm', changes={'encoder.resolution': resolution})
+    yield from by_model()
 
 
 def by_model() -> Iterator[str]:
-    """Yield the table over what the model gets wrong."""
-    yield from _head('the axis', 'cascade', 'compensated')
+    """Yield the rows over what the model gets wrong."""
     for name, force, stiffness in WRONG:
-        axis = {'axis.normal_force': force * AXIS.normal_force,
-                'axis.drive_stiffness': stiffness * AXIS.drive_stiffness}
-        yield _row(name, *map(_brief, measure(SLOW_FEED, changes=axis).values()))
+        yield _brief(name, changes={'axis.normal_force': force * AXIS.normal_force,
+                                    'axis.drive_stiffness': stiffness * AXIS.drive_stiffness})
 
 
 SECTIONS: dict[str, Callable[[], Iterator[str]]] = {
-    'The same moves with both, from low to full feed': by_feed,
-    'Higher and lower gains': by_gain,
-    'Delay': by_delay,
-    'Resolution of the encoders': by_resolution,
-    'A wrong model, at 0.5 mm/s': by_model,
+    'From low to full feed': by_feed,
+    'Gain, delay, encoders and a wrong model, at 0.2 mm/s': by_condition,
 }
 
 
@@ -208,12 +188,20 @@ def _row(*cells: object) -> str:
     return f'| {" | ".join(map(str, cells))} |'
 
 
+def _pair(of_each: Iterable[object]) -> str:
+    """Return what the cascade did, and with compensation."""
+    return ' → '.join(map(str, of_each))
+
+
 def _speeds(its: Figures) -> str:
-    return f'{its.slowest * _MILLI:.2f} to {its.fastest * _MILLI:.2f} mm/s'
+    return f'{its.slowest * _MILLI:.2f} to {its.fastest * _MILLI:.2f}'
 
 
-def _brief(its: Figures) -> str:
-    return f'{its.sticks} sticks, {its.largest_error * _MICRO:.0f} µm'
+def _brief(name: str, delay: int = 0, gains: Cascade | None = None, changes: Mapping[str, object] | None = None
+           ) -> str:
+    """Return a row with the figures of both controllers at the feed at which both come to their limits."""
+    pair = [*measure(MOVES[1], delay, gains, changes).values()]
+    return _row(name, _pair(its.sticks for its in pair), _pair(f'{its.largest_error * _MICRO:.0f}' for its in pair))
 
 
 if __name__ == '__main__':

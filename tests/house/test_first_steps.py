@@ -165,11 +165,11 @@ class TestFiveMinutes:
     HUMAN = 3.0      # s from the start of the axis to that of the controller: beyond the window of any limits from 0 on
     CHECKED = 2.0     # s, in examples/controller_limits.yaml
     SAID = r'(\[WARN\].*: waiting for an axis: .*\n)?.*: connected: .*\n'    # the first where it waits for 2 s
+    PAGE = (ROOT / 'docs/hil.md').read_text(encoding='utf-8')
     AXIS, CONTROLLER, CHECK, STEPPED_AXIS, STEPPER = (
         shlex.split(line) for block in re.findall(
-            r'```sh\n(.*?)```', (ROOT / 'docs/hil.md').read_text(encoding='utf-8').partition(
-                '## Wired in five minutes')[2].partition('\n## ')[0], re.DOTALL)
-        for line in block.splitlines() if not line.startswith('source '))
+            r'```sh\n(.*?)```', PAGE.partition('## Wired in five minutes')[2].partition('\n## ')[0], re.DOTALL)
+        for line in block.replace('\\\n', ' ').splitlines() if not line.startswith('source '))
 
     @pytest.fixture(autouse=True)
     def folder(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
@@ -226,3 +226,11 @@ class TestFiveMinutes:
         whole, part = (open_bag(run).columns('/slider_state')['position'].tolist() for run in (first, second))
         assert (part, len(whole)) == (whole[:201], 301)
         assert answered(capsys, 'verify', first)[0] == 0
+
+    def test_in_lock_step_the_check_prints_what_the_page_shows(self, capsys: Capture) -> None:
+        with started(executable('sim_node'), *self.STEPPED_AXIS[1:]) as axis:
+            assert python(*self.STEPPER[1:]).returncode == 0
+            interrupt(axis)
+        code, lines, errors = self.check(capsys)
+        assert code == 3, errors
+        assert '\n'.join(f'    {line}' for line in lines[2:]) in self.PAGE

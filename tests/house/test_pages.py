@@ -179,10 +179,8 @@ class TestQuoted:
                 for row in text_of('examples/friction_curve.csv').splitlines()[1:]]
 
     def test_the_controller_is_the_one_of_the_page(self) -> None:
-        _, _, code = text_of('examples/controller.py').partition('DriveVelocity, SliderState\n\n')
-        lines = [line.strip() for line in text_of('docs/hil.md').splitlines()]
-        assert code
-        assert [line.strip() for line in code.splitlines() if line.strip() not in ('', *lines)] == []
+        shown_part, = re.findall(r'^```python\n(.*?)^```$', text_of('docs/hil.md'), re.MULTILINE | re.DOTALL)
+        assert f'\n\n{shown_part}\n' in text_of('examples/controller.py')
 
     def test_the_recipe_for_an_installed_ros_is_the_one_that_is_run(self) -> None:
         for command in (r'rosdep install .*', r'pip install --break-system-packages .*'):
