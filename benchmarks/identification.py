@@ -26,6 +26,7 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.characteristics import plot_known_friction
 from stickslip_sim.plots.identified_motion import plot_fit, plot_residuals
 from stickslip_sim.recording import read_run
+from stickslip_sim.report.text import markdown_table
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene.load import changed
 
@@ -44,12 +45,18 @@ COMMANDS: Mapping[str, tuple[str, ...]] = {   # by the name of the part of the p
         ' --out runs/identify/axis_beside',),
     'posterior': (
         'uncertainty runs/identify/axis_found/identified.yaml --with runs/identify/axis_found/posterior.yaml'
-        ' --set drive.course=constant --set drive.velocity=0.002 --samples 64 --out runs/identify/axis_spread',),
+        ' --of drive.velocity --set drive.course=constant --set drive.velocity=0.002 --samples 64'
+        ' --out runs/identify/axis_spread',),
     'lugre': (
         'import examples/identify/lugre.csv --columns time=time,position=position,drive_force=drive_force'
         ' --out runs/identify/lugre',
         'identify runs/identify/lugre --scene examples/identify/lugre_start.yaml'
         ' --free examples/identify/lugre_free.yaml --out runs/identify/lugre_found'),
+}
+LEFT_OUT = {               # lines of the output that the page shows as "..."
+    'synthetic': '  note: ', 'check': 'axis: ', 'posterior': '  (?:axis|friction)[.]|share of',
+    'lugre': 'lugre: 4001|  last cycle|  note: (?:modes|the velocity)|contact|friction[.](?:kinetic|static[.]time)'
+             '|not separated|[0-9]+ of [0-9]+ starts|stickslip: ',
 }
 FAILS = 'lugre'            # the part whose last command ends with exit code 3
 TRUTH = {                  # of examples/identify/axis.csv, where it is not as in start.yaml
@@ -77,8 +84,9 @@ def commands() -> None:
     """Run the commands of the page, and quote them with what they print."""
     shutil.rmtree(RUNS, ignore_errors=True)
     for name, given in COMMANDS.items():
-        parts = [f'{shown(command)}\n\n{quoted(without_time(said(command, 3 if name == FAILS and k else 0)))}'
-                 for k, command in enumerate(given)]
+        texts = [said(command, 3 if name == FAILS and k else 0) for k, command in enumerate(given)]
+        parts = [f'{shown(command)}\n\n{quoted(excerpt(text, LEFT_OUT[name]))}'
+                 for command, text in zip(given, texts, strict=True)]
         replace_generated(PAGE, '\n'.join(parts), name)
     report = json.loads((RUNS / 'axis_found/report.json').read_text(encoding='utf-8'))
     replace_generated(PAGE, truth_table(report), 'truth')
@@ -87,13 +95,12 @@ def commands() -> None:
 
 def truth_table(report: Mapping[str, Any]) -> str:
     """Return what was found of the axis that is known, beside the truth."""
-    rows = ['| parameter | start | truth | found | off | in standard deviations |', '|---|---|---|---|---|---|']
+    rows = []
     for one in report['estimates']:
         truth, value = TRUTH[one['name']], one['value']
         scores = math.log(value / truth) / one['standard_deviation']
-        off = 100.0 * (value / truth - 1.0)
-        rows.append(f'| `{one["name"]}` | {one["start"]:g} | {truth:g} | {value:.6g} | {off:+.3f} % | {scores:+.1f} |')
-    return '\n'.join(rows) + '\n'
+        rows.append((f'`{one["name"]}`', f'{truth:g}', f'{100.0 * (value / truth - 1.0):+.3f}', f'{scores:+.1f}'))
+    return '\n'.join(markdown_table(('parameter', 'truth (SI)', 'error / %', 'in standard deviations'), rows)) + '\n'
 
 
 def pictures() -> None:
@@ -109,9 +116,15 @@ def pictures() -> None:
             plot_known_friction(known_friction(run, found), IMAGES / 'identified_friction.png')
 
 
-def without_time(text: str) -> str:
-    """Return what a command printed without the time that it took."""
-    return re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE)
+def excerpt(text: str, left_out: str) -> str:
+    """Return what a command printed without the time that it took, and "..." for lines that begin like `left_out`."""
+    lines = []
+    for line in re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE).splitlines():
+        if not re.match(left_out, line):
+            lines.append(line)
+        elif lines[-1:] != ['...']:
+            lines.append('...')
+    return '\n'.join(lines)
 
 
 def _write(path: pathlib.Path, samples: Mapping[str, Numbers]) -> None:

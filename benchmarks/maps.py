@@ -22,13 +22,13 @@ from stickslip_sim.bench.peers import scipy_ivp
 from stickslip_sim.bench.problem import Outcome, Problem, Setting
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
+from stickslip_sim.report.text import markdown_table
 from stickslip_sim.scene import Scene
-from stickslip_sim.study import EvenGrid, Motion, Saltelli, Study, variation
+from stickslip_sim.study import EvenGrid, Saltelli, Study, variation
 from stickslip_sim.study.table import lines, rows_of
 from stickslip_sim.study.uncertainty import load_uncertain
 
-from . import page
-from .page import quoted, replace_generated, said
+from .page import quoted, replace_generated, said, shown
 
 PAGE = pathlib.Path('docs/maps.md')
 RUNS, IMAGES = pathlib.Path('runs/maps'), pathlib.Path('docs/images')
@@ -59,31 +59,23 @@ PICTURES = {   # by the name of the part of the page: the commands, the last of 
 }
 CRITICAL = (
     'critical paper_fig7 --of drive.velocity',
-    'critical paper_fig8 --of drive.velocity --set axis.normal_force=4500.0',
-    'critical paper_fig8 --of axis.normal_force --set drive.velocity=0.01 --between 200:5000',
     f'critical paper_fig4_constant {CONSTANT} --of drive.velocity',
-    'critical stribeck --of drive.velocity',
 )
 UNCERTAIN = ('uncertainty paper_fig7 --with examples/friction.yaml --set drive.velocity=0.025 --samples 512'
              ' --out runs/maps/uncertainty --plot runs/uncertainty.png')
+UNTIL = 'amplitude\n  '   # what the page leaves out of its output: the shares of other figures than stick-slip
 SETTING = Setting(1e-8, 'tolerance')
-MACHINES, CORES = (1, 4, 16), 16   # of a cluster, and of each machine
+CORES = 16 * 16                    # of a cluster of sixteen machines
 MILLION, CHUNKS = 1_000_000, 500   # points, and the pieces that are handed out
 _ROUNDS, _BY_SCIPY = 3, 12   # sweeps that are timed; points that scipy runs
 
 
 class Cost(NamedTuple):
-    """Of a point of a grid: s of processor time by us and by scipy.
-
-    `difference` is how far the last periods are apart, relative, at most, where scipy finds all break-aways; in
-    `flawed` of `by_scipy` points it does not.
-    """
+    """Of a point, s of processor time: ours and that of scipy, which misses break-aways in `flawed` of its points."""
 
     name: str
-    points: int
     ours: float
     scipy: float
-    difference: float
     flawed: int
     by_scipy: int
 
@@ -113,17 +105,22 @@ def critical() -> None:
 def uncertainty() -> None:
     """Run an axis whose friction is known only roughly."""
     shutil.rmtree(RUNS / 'uncertainty', ignore_errors=True)
-    replace_generated(PAGE, f'{shown(UNCERTAIN)}\n\n{quoted(said(UNCERTAIN))}', 'uncertainty')
+    replace_generated(PAGE, f'{shown(UNCERTAIN)}\n\n{quoted(shortened(said(UNCERTAIN)))}', 'uncertainty')
     _keep_picture(UNCERTAIN)
 
 
+def shortened(text: str) -> str:
+    """Return what `uncertainty` prints up to the shares of its first figure."""
+    head, found, _ = text.partition(UNTIL)
+    if not found:
+        raise ValueError(f'the output lacks {UNTIL!r}')
+    return f'{head}...\n'
+
+
 def throughput() -> None:
-    """Measure what a point costs, here and by scipy, and reckon what a million do."""
+    """Measure what a point costs, here and by scipy, and calculate what a million do."""
     costs = [measured(name) for name in ('paper_fig7', 'paper_fig8')]
-    replace_generated(PAGE, throughput_table(costs), 'throughput')
-    known = [(f'{cost.name}: feed and stiffness', cost.ours) for cost in costs]
-    known.append(('paper_fig7: examples/friction.yaml', of_the_uncertain()))
-    replace_generated(PAGE, million_table(known), 'million')
+    replace_generated(PAGE, throughput_table(costs, of_the_uncertain()), 'throughput')
 
 
 PARTS = {'pictures': pictures, 'critical': critical, 'uncertainty': uncertainty, 'throughput': throughput}
@@ -137,7 +134,7 @@ def measured(name: str) -> Cost:
     ours = statistics.median(_seconds(study) for _ in range(_ROUNDS)) / study.count
     chosen = np.linspace(0, study.count - 1, _BY_SCIPY).astype(int)
     figures, points = study.figures(0, study.count), study.points(0, study.count)
-    seconds, differences, flawed = [], [], 0
+    seconds, flawed = [], 0
     _run_of_scipy(study.scene, 1.0)()   # what it compiles is not in the times
     for k in chosen:
         run = _run_of_scipy(study.scene_at(points[k]), float(figures.duration[k]))
@@ -145,11 +142,8 @@ def measured(name: str) -> Cost:
         events = run().events
         seconds.append(time.process_time() - begin)
         breaks = events[events[:, 1] == EventKind.BREAKAWAY, 0]
-        if len(breaks) != figures.cycles[k] + 1:
-            flawed += 1
-        elif figures.motion[k] == Motion.STICK_SLIP:
-            differences.append(abs((breaks[-1] - breaks[-2]) / figures.period[k] - 1.0))
-    return Cost(name, study.count, ours, statistics.mean(seconds), max(differences), flawed, len(chosen))
+        flawed += len(breaks) != figures.cycles[k] + 1
+    return Cost(name, ours, statistics.mean(seconds), flawed, len(chosen))
 
 
 def _run_of_scipy(scene: Scene, duration: float) -> Callable[[], Outcome]:
@@ -158,23 +152,16 @@ def _run_of_scipy(scene: Scene, duration: float) -> Callable[[], Outcome]:
     return scipy_ivp.SCIPY_PEERS[0].prepare(problem, SETTING)
 
 
-def throughput_table(costs: list[Cost]) -> str:
-    """Return what a point costs as a table."""
-    rows = [f'| {c.name} | {c.points} | {1e6 * c.ours:.0f} µs | {1e3 * c.scipy:.0f} ms | {c.scipy / c.ours:,.0f} × '
-            f'| {c.difference:.0e} | {c.flawed} of {c.by_scipy} |\n' for c in costs]
-    return ('| scene | points | ours, a point | scipy, a point | ratio | periods differ by '
-            '| scipy misses break-aways |\n|---|---|---|---|---|---|---|\n' + ''.join(rows))
-
-
-def million_table(costs: list[tuple[str, float]]) -> str:
-    """Return what a million points take on so many cores, each as fast as this one, by the s that one point costs."""
-    heads = ('study', 'a point', 'one core', *(f'{n} machine{"s" if n > 1 else ""}' for n in MACHINES))
-    rows = []
-    for name, cost in costs:
-        turns = (math.ceil(CHUNKS / cores) for cores in (1, *(CORES * n for n in MACHINES)))
-        times = ' | '.join(_duration(turn * MILLION / CHUNKS * cost) for turn in turns)
-        rows.append(f'| {name} | {1e6 * cost:.0f} µs | {times} |\n')
-    return f'| {" | ".join(heads)} |\n|{"---|" * len(heads)}\n' + ''.join(rows)
+def throughput_table(costs: list[Cost], of_the_uncertain: float) -> str:
+    """Return what a point costs (s), here and by scipy, and what a million take on one core and on a cluster."""
+    heads = ('study', 'stickslip, a point', 'scipy, a point', 'ratio', 'scipy misses break-aways',
+             'a million points, one core', f'{CORES} cores')
+    rows = [(f'{c.name}: feed and stiffness', c.ours, f'{1e3 * c.scipy:.0f} ms', f'{c.scipy / c.ours:,.0f}',
+             f'{c.flawed} of {c.by_scipy}') for c in costs]
+    rows.append(('paper_fig7: examples/friction.yaml', of_the_uncertain, '', '', ''))
+    return '\n'.join(markdown_table(heads, [
+        (name, f'{1e6 * cost:.0f} µs', *by_scipy, _duration(MILLION * cost),
+         _duration(math.ceil(CHUNKS / CORES) * MILLION / CHUNKS * cost)) for name, cost, *by_scipy in rows])) + '\n'
 
 
 def of_the_uncertain() -> float:
@@ -204,11 +191,6 @@ def _keep_picture(command: str) -> None:
     """Make the picture of a command that of the page."""
     picture = picture_of(command)
     shutil.copyfile(picture, IMAGES / picture.name)
-
-
-def shown(command: str) -> str:
-    """Return a command as the page shows it."""
-    return page.shown(command, 'python3 -m stickslip_sim')
 
 
 if __name__ == '__main__':

@@ -57,7 +57,7 @@ def table() -> str:
     axis = paper_axis(RIGID)
     slips = {'coasting (the engine)': exact_slip(axis),
              **{f'last sign of ẍ, steps of {step * 1e6:g} µs': naive_slip(step, axis) for step in STEPS}}
-    heads = 'first slip', 'time / ms', 'travel / mm', 'peak speed / (mm/s)', 'changes of branch'
+    heads = 'first slip', 'time / ms', 'peak speed / (mm/s)', 'changes of branch'
     return '\n'.join(markdown_table(heads, [
-        (name, f'{slip.time * 1e3:.2f}', f'{slip.travel * 1e3:.4f}', f'{slip.peak_speed * 1e3:.3f}', str(slip.switches))
+        (name, f'{slip.time * 1e3:.2f}', f'{slip.peak_speed * 1e3:.3f}', str(slip.switches))
         for name, slip in slips.items()])) + '\n'

@@ -138,7 +138,7 @@ class TestQuoted:
                          r'((?:    .*\n|\n(?=    (?!stickslip|python3 -m stickslip_sim)))+)', re.MULTILINE)
 
     @pytest.mark.parametrize(('page', 'part', 'number'), [
-        ('friction_curve', 'friction', 0), ('friction_curve', 'critical', 0), ('maps', 'critical', 3)])
+        ('friction_curve', 'friction', 0), ('friction_curve', 'critical', 0), ('maps', 'critical', 1)])
     def test_a_command_prints_what_is_quoted(self, page: str, part: str, number: int,
                                              monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
         """In less than a second; those that take longer are in test_pages_run.py."""
@@ -148,9 +148,9 @@ class TestQuoted:
         assert (code, quoted(out)) == (0, printed)
 
     @pytest.mark.parametrize(('page', 'part', 'commands'), [
-        *(('maps', name, [*map(maps.shown, commands)]) for name, commands in maps.PICTURES.items()),
-        ('maps', 'critical', [*map(maps.shown, maps.CRITICAL)]),
-        ('maps', 'uncertainty', [maps.shown(maps.UNCERTAIN)]),
+        *(('maps', name, [*map(shown, commands)]) for name, commands in maps.PICTURES.items()),
+        ('maps', 'critical', [*map(shown, maps.CRITICAL)]),
+        ('maps', 'uncertainty', [shown(maps.UNCERTAIN)]),
         *(('identification', name, [*map(shown, commands)]) for name, commands in identification.COMMANDS.items()),
     ])
     def test_the_commands_are_those_that_are_measured(self, page: str, part: str, commands: list[str]) -> None:

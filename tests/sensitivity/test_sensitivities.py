@@ -4,8 +4,10 @@
 
 import json
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
+from textwrap import indent
 
 import mpmath
 import numpy as np
@@ -342,6 +344,13 @@ def test_the_page_has_what_the_tool_prints() -> None:
     page = (ROOT / 'docs' / 'sensitivities.md').read_text(encoding='utf-8')
     for row in [*text_lines([feed_table(found)])][:4]:
         assert any(line.split() == row.split() for line in page.splitlines()), row
+
+
+def test_the_code_of_the_page_prints_what_it_shows(capsys: Capture) -> None:
+    page = (ROOT / 'docs' / 'sensitivities.md').read_text(encoding='utf-8')
+    code, = re.findall(r'^```python\n(.*?)^```$', page, re.MULTILINE | re.DOTALL)
+    exec(code, {})
+    assert f'\n\n{indent(capsys.readouterr().out, "    ")}\n' in page
 
 
 def test_every_feed_is_a_scene_that_runs() -> None:

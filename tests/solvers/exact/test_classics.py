@@ -33,7 +33,7 @@ from benchmarks.classics import (
 )
 from benchmarks.closed_forms import coulomb_cycle, den_hartog
 from benchmarks.naive_switching import exact_slip, naive_slip
-from benchmarks.paper import PAGE, tables
+from benchmarks.paper import DATA, PAGE, made
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
 from stickslip_sim.core.input_profile import constant, ramp
 from stickslip_sim.core.types import EventKind, Mode
@@ -170,14 +170,20 @@ def test_switching_by_the_last_sign_of_acceleration_converges_to_another_motion(
 
 
 @pytest.mark.parametrize('name', ['sensitivity', 'switching', 'classics', 'critical'])
-def test_the_page_shows_what_is_measured_now(name: str, shown: dict[str, str]) -> None:
-    assert f'<!-- {name}: begin -->\n\n{shown[name]}\n<!-- {name}: end -->' in PAGE.read_text(encoding='utf-8'), (
+def test_the_page_shows_what_is_measured_now(name: str, measured: tuple[dict[str, str], dict[str, str]]) -> None:
+    assert f'<!-- {name}: begin -->\n\n{measured[0][name]}\n<!-- {name}: end -->' in PAGE.read_text(encoding='utf-8'), (
         'python3 -m benchmarks.paper writes it anew')
 
 
+@pytest.mark.parametrize('name', ['paper_choices.csv', 'paper_classics.csv'])
+def test_the_data_of_the_page_are_what_is_measured_now(name: str,
+                                                       measured: tuple[dict[str, str], dict[str, str]]) -> None:
+    assert (DATA / name).read_text(encoding='utf-8') == measured[1][name], 'python3 -m benchmarks.paper writes it anew'
+
+
 @pytest.fixture(scope='module')
-def shown() -> dict[str, str]:
-    return tables()
+def measured() -> tuple[dict[str, str], dict[str, str]]:
+    return made()
 
 
 # The belt and the brake of the paper's Fig. 1 are this axis, seen from the belt.
