@@ -40,23 +40,23 @@ check: tools  ## style, types, architecture, dead code, spelling, words and link
 extremes: tools  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed
 	@$(HERE) python3 -m stickslip_sim extremes
 
-bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/ (25 minutes)
+bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/data/ (25 minutes)
 	@ros2_ws/bootstrap --bench
 	@$(HERE) python3 -m stickslip_sim bench --out runs/bench
 	@$(HERE) --own-domain --shared-memory python3 benchmarks/tick.py --json runs/bench/bench.json
 	@$(HERE) python3 -m benchmarks.accuracy runs/bench
-	@$(HERE) --own-domain --shared-memory python3 benchmarks/loop.py
+	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.loop
 	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.budget
 	@$(HERE) python3 -m benchmarks.paper
 	@$(HERE) python3 -m benchmarks.controllers
 
-identify: build  ## what stickslip identify finds on 100 axes whose truth is known, beside others; writes docs/ (15 minutes)
+identify: build  ## what stickslip identify finds on 100 axes whose truth is known, beside others; writes docs/data/ (15 minutes)
 	@OPENBLAS_NUM_THREADS=1 $(HERE) python3 -m benchmarks.identify
 
-hil: build  ## the node with a controller beside it: against a bare rclpy node, and the highest rate; writes docs/
+hil: build  ## the node with a controller beside it: against a bare rclpy node, and the highest rate; writes docs/data/
 	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.hil
 
-soak: build  ## the node, recording, with a controller beside it for MINUTES=10; writes docs/, fails when a limit is missed
+soak: build  ## the node, recording, with a controller beside it for MINUTES=10; writes docs/data/, fails when a limit is missed
 	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.soak --minutes $(MINUTES)
 
 cnc: tools  ## two axes under LinuxCNC's own motion and PID: a circle's figures; says so where LinuxCNC is not installed
@@ -77,7 +77,7 @@ mutants: tools  ## small errors in a copy of the package, one by one: is each ki
 timings: tools  ## start of tool and node, an hour offline: medians into runs/goldens/TO=now, beside those of FROM=
 	@$(HERE) --own-domain --shared-memory python3 -m dev.timings runs/goldens/$(or $(TO),now) $(if $(FROM),--against runs/goldens/$(FROM))
 
-pages: tools  ## what is made from the code in docs/api.md, docs/scene.md and the changelogs of the packages
+pages: tools  ## docs/api.md, docs/scene.md and the packages' changelogs from the code, docs/measured.md from docs/data/
 	@$(HERE) python3 -m dev.pages
 
 docs: tools  ## the pages in docs/ as a site in runs/docs/

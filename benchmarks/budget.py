@@ -1,8 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measure where the time of a step of the node goes, part by part, and write it into docs/loop.md.
+"""Measure where the time of a step of the node goes, part by part: docs/data/budget.json.
 
-    python3 -m benchmarks.budget [--rate 1000] [--seconds 10] [--priority 50] [--out docs/loop.md]
+    python3 -m benchmarks.budget [--rate 1000] [--seconds 10] [--priority 50] [--out docs/data/budget.json]
 
 The node runs in this process, recording, beside a controller in a process of its own.  Each part of a step leaves its
 start and its end in a ring; that takes 0.2 µs a part.
@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -32,14 +32,14 @@ from stickslip_sim.ros.stop_signals import Signals
 
 from .hil.process import SCENE
 from .loop import machine
+from .measured import DATA, keep
 
-HEADING = '## The budget of a step'
 STEP, LATE, GARBAGE = 'step', 'late', 'garbage collector'
 PARTS = {
-    'hear': 'take what has arrived from the middleware, check it', 'take': 'which commands are new',
-    'simulate': 'the rig: one step of the axis and what is around it', 'rig events': 'report what happened to the rig',
-    'pack': 'make the bytes of the state and of the friction force', 'publish': 'hand them to the middleware',
-    'record': 'hand them to the thread of the recorder', 'statistics': 'note cost, lateness, age, latency',
+    'hear': 'take and check what has arrived', 'take': 'which commands are new',
+    'simulate': 'one step of the axis and its rig', 'rig events': 'report what happened to the rig',
+    'pack': 'serialize state and friction force', 'publish': 'hand both to the middleware',
+    'record': 'hand both to the thread of the recorder', 'statistics': 'note cost, lateness, age, latency',
 }
 
 
@@ -87,8 +87,8 @@ class Ring:
         gc.callbacks.append(collects)
 
     def column(self, part: str) -> NDArray[np.float64]:
-        """Return what each step spent on a part, µs."""
-        return np.array([row.get(part, 0) for row in self.rows]) * 1e-3
+        """Return what each step spent on a part, s."""
+        return np.array([row.get(part, 0) for row in self.rows]) * 1e-9
 
 
 def instrument(node: Any, ring: Ring) -> None:
@@ -132,43 +132,35 @@ def measure(options: argparse.Namespace, folder: Path) -> Ring:
     return ring
 
 
-def table(ring: Ring) -> Iterable[str]:
-    """Yield the lines of the table."""
-    def line(name: str, what: str, spent: NDArray[np.float64]) -> str:
-        levels = np.percentile(spent, (50, 99, 99.9, 100))
-        return f'| {name} | {what} | ' + ' | '.join(f'{level:.1f}' for level in levels) + ' |'
-
+def rows(ring: Ring) -> Iterator[dict[str, object]]:
+    """Yield what each part takes, s."""
     whole, parts = ring.column(STEP), {part: ring.column(part) for part in PARTS}
-    yield from ('| part | what | p50, µs | p99 | p99.9 | max |', '|---|---|---|---|---|---|')
-    yield from (line(name, what, parts[name]) for name, what in PARTS.items())
-    yield line('the rest', 'calls between these, and the stamps themselves', whole - sum(parts.values()))
-    yield line('**the whole step**', 'its `cost` in `timing`', whole)
-    yield line('before it: lateness', 'from when it is due, through waking and getting the interpreter, to its start',
-               ring.column(LATE))
-    collected = ring.column(GARBAGE)
-    yield ''
-    yield (f'* The garbage collector ran in {np.mean(collected > 0):.2%} of the steps, for at most'
-           f' {collected.max():.0f} µs; it is part of what it fell into.')
+    for part, what, spent in (
+            *((name, what, parts[name]) for name, what in PARTS.items()),
+            ('the rest', 'calls between these, and the stamps', whole - sum(parts.values())),
+            ('the whole step', 'its `cost` in `timing`', whole),
+            ('lateness before it', 'from due time to start: waking, GIL',
+             ring.column(LATE))):
+        yield {'part': part, 'what': what, **dict(zip(('p50', 'p99', 'p999', 'max'),
+                                                      np.percentile(spent, (50, 99, 99.9, 100)).tolist()))}
 
 
 def main() -> None:
-    """Measure, and write the section."""
+    """Measure, and keep the figures."""
     parser = argparse.ArgumentParser(prog='python3 -m benchmarks.budget', description=__doc__.splitlines()[0])
     parser.add_argument('--rate', type=float, default=1000.0, help='1/s')
     parser.add_argument('--seconds', type=float, default=10.0)
     parser.add_argument('--priority', type=int, default=50, help='thread_priority; 0: none')
-    parser.add_argument('--out', type=Path, default=Path('docs/loop.md'))
+    parser.add_argument('--out', type=Path, default=DATA / 'budget.json')
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as parent:
         ring = measure(options, Path(parent, 'run'))
     while len(ring.rows) > options.seconds * options.rate:    # the start of node and controller is another matter
         ring.rows.popleft()
-    lines = [HEADING, '', f'`python3 -m benchmarks.budget --rate {options.rate:g} --seconds {options.seconds:g}'
-             f' --priority {options.priority}` wrote this section on', f'{machine()}.', '',
-             f'The node on `{SCENE}`, recording, beside a controller that sends 1000 commands a second;'
-             f' {len(ring.rows)} steps.', '', *table(ring), '']
-    text = options.out.read_text(encoding='utf-8').partition(HEADING)[0].rstrip('\n')
-    options.out.write_text('\n'.join([text, '', *lines]), encoding='utf-8')
+    collected = ring.column(GARBAGE)
+    keep(options.out, command=f'python3 -m benchmarks.budget --rate {options.rate:g} --seconds {options.seconds:g}'
+         f' --priority {options.priority}', machine=machine(), steps=len(ring.rows),
+         garbage_share=float(np.mean(collected > 0)), garbage_longest=float(collected.max()), rows=list(rows(ring)))
 
 
 if __name__ == '__main__':

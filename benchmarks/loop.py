@@ -1,8 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measure the loops that could drive the node, and write the table that the choice rests on.
+"""Measure the loops that could drive the node: docs/data/loop.json, on which the choice rests.
 
-    python3 benchmarks/loop.py [--seconds 4] [--repeats 3] [--out docs/loop.md]
+    python3 -m benchmarks.loop [--seconds 4] [--repeats 3] [--out docs/data/loop.json]
 
 Every case runs in a process of its own, which publishes two messages of the node (filled in place, serialized once) in
 each step; figures are medians over the repeats.  A case with commands receives drive velocities at 1 kHz from a further
@@ -33,16 +33,19 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 
 from stickslip_msgs.msg import DriveVelocity, FrictionForce, SliderState, StepTiming
+from stickslip_sim.bench import report
 from stickslip_sim.core.time_grid import Grid
 from stickslip_sim.realtime.pacing import Pacer, wake_precisely
+
+from .measured import DATA, keep
 
 LOOPS = {
     'timer-single': 'rclpy timer, SingleThreadedExecutor',
     'timer-events': 'rclpy timer, EventsExecutor',
-    'coarse-events': 'own thread with the default timer slack, EventsExecutor beside it',
-    'thread-single': 'own thread, SingleThreadedExecutor beside it',
-    'thread-events': 'own thread, EventsExecutor beside it',
-    'node': '**`sim_node`** on `paper_fig8`, all topics',
+    'coarse-events': 'own thread with the default timer slack, EventsExecutor',
+    'thread-single': 'own thread, SingleThreadedExecutor',
+    'thread-events': 'own thread, EventsExecutor',
+    'node': '`sim_node` on `paper_fig8`, all topics',
 }
 RATES = (1000, 2000, 4000)
 COMMANDS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -145,8 +148,8 @@ def measure(case: str, rate: int, seconds: float, with_commands: bool) -> NoRetu
     runners[form](node, executor, rate, seconds, work)
     wall, cpu = time.monotonic() - start, time.process_time() - cpu
     late = statistics.quantiles(work.lateness, n=1000, method='inclusive')
-    finish({'rate': len(work.lateness) / wall, 'p50': late[499] * 1e-3, 'p99': late[989] * 1e-3,
-            'p999': late[998] * 1e-3, 'cpu': cpu / len(work.lateness) * 1e6, 'received': received[0] / wall})
+    finish({'achieved': len(work.lateness) / wall, 'commands': received[0] / wall, 'lateness_p50': late[499] * 1e-9,
+            'lateness_p99': late[989] * 1e-9, 'lateness_p999': late[998] * 1e-9, 'cpu': cpu / len(work.lateness)})
 
 
 def finish(figures: dict[str, float]) -> NoReturn:
@@ -192,11 +195,10 @@ def watch_node(rate: int, seconds: float) -> dict[str, float]:
         process.wait()
     windows = windows[first:]
     steps = sum(window.steps for window in windows)
-    wall = steps / rate
-    median = {name: statistics.median(getattr(window, f'lateness_{name}') for window in windows) * 1e6
-              for name in ('p50', 'p99', 'p999')}
-    return {**median, 'rate': statistics.median(window.real_time_factor for window in windows) * rate,
-            'cpu': cpu / steps * 1e6, 'received': received / wall}
+    return {'achieved': statistics.median(window.real_time_factor for window in windows) * rate,
+            'commands': received / steps * rate, 'cpu': cpu / steps,
+            **{name: statistics.median(getattr(window, name) for window in windows)
+               for name in ('lateness_p50', 'lateness_p99', 'lateness_p999')}}
 
 
 def executable(name: str) -> str:
@@ -216,7 +218,7 @@ def cpu_seconds(pid: int) -> float:
 
 def run_case(case: str, rate: int, seconds: float, with_commands: bool) -> dict[str, float]:
     """Run one case in a process of its own."""
-    me = [sys.executable, __file__, '--seconds', str(seconds)]
+    me = [sys.executable, '-m', 'benchmarks.loop', '--seconds', str(seconds)]
     client = subprocess.Popen([*me, '--send']) if with_commands else None
     try:
         flags = ['--commands'] if with_commands else []
@@ -235,54 +237,18 @@ def medians(runs: list[dict[str, float]]) -> dict[str, float]:
     return {name: statistics.median(run[name] for run in runs) for name in runs[0]}
 
 
-def row(case: str, rate: int, with_commands: bool, figures: dict[str, float]) -> str:
-    """Return a line of the table."""
-    commands = f'{figures["received"]:.0f}' if with_commands else '–'
-    return (f'| {LOOPS[case]} | {rate} | {figures["rate"]:.1f} | {commands} | {figures["p50"]:.0f} | '
-            f'{figures["p99"]:.0f} | {figures["p999"]:.0f} | {figures["cpu"]:.0f} |')
-
-
 def machine() -> str:
     """Return what was measured on."""
-    model = next((line.split(':')[1].strip() for line in pathlib.Path('/proc/cpuinfo').read_text().splitlines()
-                  if line.startswith('model name')), platform.machine())
-    return (f'{os.cpu_count()} × {model}, Linux {platform.release()}, Python {platform.python_version()}, '
+    return (f'{report.machine()}, Python {platform.python_version()}, '
             f'ROS 2 {os.environ.get("ROS_DISTRO", "?")}, {rclpy.get_rmw_implementation_identifier()}')
 
 
-_CHOICE = (
-    'The node steps in a thread of its own with absolute deadlines, beside an EventsExecutor for callbacks, because:',
-    '',
-    '* a timer leaves out the ticks that it is late for (achieved < rate); the thread makes them up (its p99 and p99.9',
-    '  hold the steps that waited behind a stall of the machine);',
-    '* callbacks of commands cost least with the EventsExecutor, and disturb the steps least;',
-    '* a timer slack of 1 ns instead of the default 50 µs (`prctl`) starts the steps nearer to their due time;',
-    '* a callback may keep the interpreter 0.05 ms (`sys.setswitchinterval`) instead of 5 ms before a step gets it.',
-)
-
-
-def report(rows: list[str], options: argparse.Namespace) -> str:
-    """Return the page."""
-    return '\n'.join([
-        '# The loop of the node, measured', '',
-        'See here how punctual the step loop of the node is, beside other ways to write one in rclpy.',
-        f'`python3 benchmarks/loop.py --seconds {options.seconds:g} --repeats {options.repeats}` wrote this page on',
-        f'{machine()}.', '',
-        f'* Each case is a process of its own, {options.seconds:g} s, median of {options.repeats}; two messages'
-        ' a step.',
-        '* Commands: drive velocities per second that arrived from a further process that sends 1000.',
-        '* Lateness: from the instant when a step was due to its start.',
-        '* CPU: user and system time of the whole process, per step.', '',
-        '| loop | rate, 1/s | achieved, 1/s | commands, 1/s | lateness p50, µs | p99 | p99.9 | CPU per step, µs |',
-        '|---|---|---|---|---|---|---|---|', *rows, '', *_CHOICE, ''])
-
-
 def main() -> None:
-    """Run all cases and write the page, or be one of the processes."""
+    """Run all cases and keep their figures, or be one of the processes."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--seconds', type=float, default=4.0, help='of each run')
     parser.add_argument('--repeats', type=int, default=3)
-    parser.add_argument('--out', type=pathlib.Path, default=pathlib.Path('docs/loop.md'))
+    parser.add_argument('--out', type=pathlib.Path, default=DATA / 'loop.json')
     parser.add_argument('--case', choices=LOOPS, help=argparse.SUPPRESS)
     parser.add_argument('--rate', type=int, help=argparse.SUPPRESS)
     parser.add_argument('--commands', action='store_true', help=argparse.SUPPRESS)
@@ -296,10 +262,10 @@ def main() -> None:
     rows = []
     for case, rate, commands in cases:
         runs = [run_case(case, rate, options.seconds, commands) for _ in range(options.repeats)]
-        rows.append(row(case, rate, commands, medians(runs)))
-        sys.stderr.write(rows[-1] + '\n')
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(report(rows, options), encoding='utf-8')
+        rows.append({'loop': LOOPS[case], 'rate': rate, **medians(runs), **({} if commands else {'commands': None})})
+        sys.stderr.write(f'{rows[-1]}\n')
+    keep(options.out, command=f'python3 -m benchmarks.loop --seconds {options.seconds:g} --repeats {options.repeats}',
+         machine=machine(), rows=rows)
 
 
 if __name__ == '__main__':

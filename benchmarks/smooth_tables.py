@@ -1,12 +1,15 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a table in place of a smooth law does to the motion: `python3 -m benchmarks.smooth_tables > docs/smooth.md`.
+"""What a table in place of a smooth law does to the motion: docs/data/smooth_laws.json.
 
 The paper's axis with a Stribeck law of the paper's size, 3 s at 2 mm/s from prolonged rest: the exact engine with
 tables of several tolerances, against the smooth law integrated without a table (`smooth_reference`).
+
+    python3 -m benchmarks.smooth_tables
 """
 
-import sys
+from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
@@ -18,6 +21,7 @@ from stickslip_sim.friction.refine import table_error
 from stickslip_sim.friction.smooth import stribeck
 from stickslip_sim.simulation.simulator import Simulator
 
+from .measured import DATA, OFF, ON, keep
 from .smooth_reference import SmoothEvent, SmoothRun
 
 LAW = stribeck(0.12, 0.05, 0.015, 0.1)
@@ -25,45 +29,6 @@ FEED, DURATION = 0.002, 3.0
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 CASES = [(contact, branches) for contact in (RigidContact(), CompliantContact(5e6, 15000.0))
          for branches in (True, False)]
-
-_BRANCHES = {True: 'two', False: 'one'}
-_HEAD = """\
-# Smooth friction laws, and the effect of their tables
-
-Choose here the tolerance of a smooth friction law: the tables show how far the events move.
-`python3 -m benchmarks.smooth_tables > docs/smooth.md` makes this page.
-
-The engine is exact for friction that is linear between breakpoints.  A smooth law (`friction.kinetic.law: stribeck`,
-`exponential`, `hyperbolic`; `friction.excess.law: cosine`, `power`) becomes a table whose difference to the law is at
-most `tolerance` at every speed, from rest to infinity.  The bound is proven, not sampled: between inflections the
-difference has its extremes at the breakpoints and where the law has the slope of the segment, and these are computed
-from the finished table.  A tolerance that takes more than 1000 breakpoints is refused, with one that fits.
-
-The breakpoints lie off the curve, on its outer side, by the tolerance (less a margin for rounding).  In the middle of a
-segment the difference is half as much, on the other side.  So it has zero mean in first order, and over a segment the
-table takes the same energy out of a slip as the law.  At rest and at infinite speed the table is the law.
-
-**Measured:** the paper's axis with mu_k = 0.05 + 0.07 exp(−(w/15 mm/s)²) + (0.1 s/m) w, static friction as in
-`paper_fig8`, 3 s at 2 mm/s from prolonged rest, with acceleration dependence (two branches) and without.  All events
-are compared with those of the smooth law, integrated without a table (`benchmarks/smooth_reference.py`: DOP853,
-relative tolerance 1e-13).  On the whole the error falls in proportion to the tolerance or faster: segment by segment
-the differences cancel, but the slip ends within a segment, and lingers at its peak speed.  The last column is the
-largest error in time over the tolerance.
-
-| contact | branches | tolerance | breakpoints | events | worst in time / s | worst in position / m | s per unit of mu |
-|---|---|---|---|---|---|---|---|
-"""
-_TAIL = """
-Rows with "other" have another sequence of events than the smooth law: the table is too coarse.  The comparison leaves
-out a coast of nanoseconds after a break-away of the compliant contact: the last remains of its ring-down decide whether
-there is one.
-
-For comparison, the same with the usual table, whose breakpoints lie on the curve (as few as the tolerance allows; rigid
-contact):
-
-| branches | tolerance | breakpoints | worst in time / s | worst in position / m | s per unit of mu |
-|---|---|---|---|---|---|
-"""
 
 
 class Comparison(NamedTuple):
@@ -125,36 +90,20 @@ def compared(smooth: list[SmoothEvent], contact: RigidContact | CompliantContact
                       max(abs(a.time - b.time) for a, b in pairs), max(abs(a.position - b.position) for a, b in pairs))
 
 
-def _rows() -> list[str]:
-    rows = []
+def rows() -> Iterator[dict[str, object]]:
+    """Yield how far the events of each table are off, and of one whose breakpoints lie on the curve."""
     for contact, branches in CASES:
         smooth = smooth_events(contact, branches)
-        name = 'compliant' if isinstance(contact, CompliantContact) else 'rigid'
-        for tolerance in TOLERANCES:
-            table = kinetic_table(LAW, tolerance)
-            result = compared(smooth, contact, branches, table)
-            rows.append(f'| {name} | {_BRANCHES[branches]} | {tolerance:.0e} | {len(table.velocities)} | '
-                        f'{result.events} | {_errors(result, tolerance)} |\n')
-    return rows
-
-
-def _rows_on_the_curve() -> list[str]:
-    rows = []
-    for branches in (True, False):
-        smooth = smooth_events(RigidContact(), branches)
-        for tolerance in TOLERANCES:
-            table = breakpoints_on_the_curve(tolerance)
-            result = compared(smooth, RigidContact(), branches, table)
-            rows.append(f'| {_BRANCHES[branches]} | {tolerance:.0e} | {len(table.velocities)} | '
-                        f'{_errors(result, tolerance)} |\n')
-    return rows
-
-
-def _errors(result: Comparison, tolerance: float) -> str:
-    if not result.same:
-        return 'other | other |'
-    return f'{result.time:.1e} | {result.position:.1e} | {result.time / tolerance:.2g}'
+        is_rigid = isinstance(contact, RigidContact)
+        for kind, table_of in ((OFF, partial(kinetic_table, LAW)), (ON, breakpoints_on_the_curve))[:1 + is_rigid]:
+            for tolerance in TOLERANCES:
+                table = table_of(tolerance)
+                result = compared(smooth, contact, branches, table)
+                yield {'breakpoints_lie': kind, 'contact': 'rigid' if is_rigid else 'compliant',
+                       'branches': 1 + branches, 'tolerance': tolerance, 'breakpoints': len(table.velocities),
+                       'events': result.events, 'time_error': result.time if result.same else None,
+                       'position_error': result.position if result.same else None}
 
 
 if __name__ == '__main__':
-    sys.stdout.write(_HEAD + ''.join(_rows()) + _TAIL + ''.join(_rows_on_the_curve()))
+    keep(DATA / 'smooth_laws.json', command='python3 -m benchmarks.smooth_tables', rows=list(rows()))

@@ -1,8 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Let the recording node and a controller run for minutes: memory flat, no drift, nothing lost; write the table.
+"""Let the recording node and a controller run for minutes: memory flat, no drift, nothing lost: docs/data/soak.json.
 
-    python3 -m benchmarks.soak [--minutes 10] [--priority 0] [--out docs/soak.md]
+    python3 -m benchmarks.soak [--minutes 10] [--priority 0] [--out docs/data/soak.json]
 
 Exit code 1 when a limit is missed.
 """
@@ -21,9 +21,10 @@ import numpy as np
 from stickslip_sim.recording import open_bag
 
 from .hil.measure import bag_figures, node_figures
-from .hil.process import SCENE, control, node_command, resident, running
+from .hil.process import control, node_command, resident, running
 from .hil.slow_listener import TAKES
 from .loop import machine
+from .measured import DATA, keep
 
 RATE = 1000.0    # 1/s
 PERIOD = 1.0     # s between two looks at the memory
@@ -32,31 +33,28 @@ WARM_UP = 2      # parts, before the memory is looked at
 BELOW = 2        # priority of the controller, below that of the step thread; the node's other threads are 1 below
 
 
-class Limit(NamedTuple):
-    """A figure, the most that its magnitude may be, and how both are shown."""
+class Figure(NamedTuple):
+    """A figure, and the most that its magnitude may be."""
 
     title: str
     name: str
-    most: float
-    form: str
+    most: float | None = None
 
 
-LIMITS = (
-    Limit(f'memory after the first {WARM_UP} parts, most less least, MiB', 'spread', 5.0, '.2f'),
-    Limit('memory, growth in the second half, KiB/min', 'growth', 512.0, '.1f'),
-    Limit('simulation time against the steady clock, drift, ms', 'drift_ms', 1.0, '.3f'),
-    Limit('steps that the controller did not hear', 'unheard', 0.0, '.0f'),
-    Limit('steps that are not in the bag', 'unrecorded', 0.0, '.0f'),
-    Limit('messages that the recorder dropped', 'dropped', 0.0, '.0f'),
-)
-FACTS = (
-    Limit('steps', 'steps', np.inf, '.0f'),
-    Limit(f'states that the slow subscriber took, in {TAKES * 1e3:g} ms each', 'slow', np.inf, '.0f'),
-    Limit('memory at the end, MiB', 'resident', np.inf, '.1f'),
-    Limit('steps that began more than a period late, %', 'overruns_percent', np.inf, '.3f'),
-    Limit('lateness, p99, median of the seconds, ms', 'lateness_p99_ms', np.inf, '.3f'),
-    Limit('lateness, maximum, ms', 'lateness_max_ms', np.inf, '.1f'),
-    Limit('load of the machine (threads that run or wait for a core), last 15 minutes', 'load', np.inf, '.1f'),
+FIGURES = (
+    Figure(f'memory after the first {WARM_UP} of {PARTS} parts, most less least, MiB', 'spread', 5.0),
+    Figure('memory, growth in the second half, KiB/min', 'growth', 512.0),
+    Figure('simulation time against the steady clock, drift, ms', 'drift_ms', 1.0),
+    Figure('steps that the controller did not hear', 'unheard', 0.0),
+    Figure('steps that are not in the bag', 'unrecorded', 0.0),
+    Figure('messages that the recorder dropped', 'dropped', 0.0),
+    Figure('steps', 'steps'),
+    Figure(f'states that the slow subscriber took, in {TAKES * 1e3:g} ms each', 'slow'),
+    Figure('memory at the end, MiB', 'resident'),
+    Figure('steps that began more than a period late, %', 'overruns_percent'),
+    Figure('lateness, p99, median of the seconds, ms', 'lateness_p99_ms'),
+    Figure('lateness, maximum, ms', 'lateness_max_ms'),
+    Figure('load average of the machine, 15 minutes', 'load'),
 )
 
 
@@ -113,50 +111,25 @@ def soak(minutes: float, priority: int = 0) -> tuple[dict[str, float], str]:
 
 def missed(figures: Mapping[str, float]) -> list[str]:
     """Return the limits that the figures miss, a NaN among them."""
-    return [limit.title for limit in LIMITS if not abs(figures[limit.name]) <= limit.most]
-
-
-def page(minutes: float, priority: int, figures: Mapping[str, float], verdict: str) -> str:
-    """Return the page."""
-    rows = [f'| {limit.title} | {figures[limit.name]:{limit.form}} | '
-            f'{f"{limit.most:g}" if np.isfinite(limit.most) else "–"} |' for limit in (*LIMITS, *FACTS)]
-    failures = missed(figures)
-    options = f'--minutes {minutes:g}' + (f' --priority {priority}' if priority else '')
-    scheduling = (f'  Its step thread has SCHED_FIFO {priority}, its other threads and the controller a little less.'
-                  if priority else '')
-    return '\n'.join([
-        '# The soak', '',
-        'See here whether memory, drift and losses of a recording node stay within their limits for long.',
-        f'`python3 -m benchmarks.soak {options}` (`make soak`) wrote this page on',
-        f'{machine()}.', '',
-        f'`sim_node` runs `{SCENE}` at {RATE:g} steps a second for {minutes:g} minutes, with its recording in parts',
-        f'of {minutes / PARTS:g} minutes (`record.max_duration`).  A controller in a process of its own answers every',
-        f'state with a drive velocity, and a reliable subscriber takes {TAKES * 1e3:g} ms for a state: a publisher',
-        'keeps the latest states for it, and waits for none.  What grows in memory while the node records is the index',
-        f'of a part, which MCAP writes at its end.{scheduling}', '',
-        '| figure | measured | at most |', '|---|---|---|', *rows, '',
-        'Missed: ' + '; '.join(failures) + '.' if failures else
-        'Memory, drift and loss are within their limits.', '',
-        'The lateness of steps depends on the machine, and has no limit here.  The node holds it to the section',
-        '`timing` of its scene ([hil.md](hil.md)); its verdict on this run:', '', f'    {verdict}', ''])
+    return [one.title for one in FIGURES if one.most is not None and not abs(figures[one.name]) <= one.most]
 
 
 def main() -> int:
-    """Soak, write the page, return the exit code."""
+    """Soak, keep the figures, return the exit code."""
     parser = argparse.ArgumentParser(prog='python3 -m benchmarks.soak', description=__doc__.splitlines()[0])
     parser.add_argument('--minutes', type=float, default=10.0, help='[%(default)g]')
     parser.add_argument('--priority', type=int, default=0, help='SCHED_FIFO of the step thread; 0: none')
-    parser.add_argument('--out', type=Path, default=Path('docs/soak.md'), help='[%(default)s]')
+    parser.add_argument('--out', type=Path, default=DATA / 'soak.json', help='[%(default)s]')
     options = parser.parse_args()
     if not 0.2 <= options.minutes <= 1e4:
         parser.error(f'argument --minutes: {options.minutes:g}; give 0.2 to 10000')
     if options.priority and not BELOW < options.priority <= 98:
         parser.error(f'argument --priority: {options.priority}; give 0, or {BELOW + 1} to 98')
     figures, verdict = soak(options.minutes, options.priority)
-    text = page(options.minutes, options.priority, figures, verdict)
-    options.out.parent.mkdir(parents=True, exist_ok=True)
-    options.out.write_text(text, encoding='utf-8')
-    sys.stdout.write(text)
+    rows = [{'figure': one.title, 'measured': figures[one.name], 'at_most': one.most} for one in FIGURES]
+    keep(options.out, command=f'python3 -m benchmarks.soak --minutes {options.minutes:g} --priority {options.priority}',
+         machine=machine(), verdict=verdict, rows=rows)
+    print(*rows, *(f'missed: {title}' for title in missed(figures)), sep='\n')
     return 1 if missed(figures) else 0
 
 

@@ -5,12 +5,15 @@
 from collections.abc import Callable, Mapping
 from functools import partial
 
+from benchmarks import measured
+
 from . import api, changelog, scene_page
 from .files import ROOT
 
 MADE: Mapping[str, Callable[[], str]] = {
     'docs/api.md': api.page,
     'docs/scene.md': scene_page.page,
+    'docs/measured.md': measured.page,
     **{f'{package}/CHANGELOG.rst': partial(changelog.changelog, package) for package in changelog.PACKAGES},
 }
 

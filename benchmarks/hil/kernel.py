@@ -12,8 +12,6 @@ import numpy as np
 
 _LONGEST = 20_000    # µs in the histogram; what is later counts there
 
-INSTALL = 'cyclictest is not installed (Debian: apt install rt-tests)'
-
 
 def is_there() -> bool:
     """Return whether cyclictest can be run."""

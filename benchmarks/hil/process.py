@@ -15,7 +15,6 @@ from ..loop import executable
 
 SCENE = 'paper_fig8'
 PATIENCE = 60.0    # s for a process to end
-CONTROLLED = 'in a process of its own answers 1000 states a second'
 
 
 def node_command(rate: float, folder: Path, priority: int = 0) -> list[str]:
@@ -42,7 +41,7 @@ COMMANDS: dict[str, Callable[[float, Path, int], list[str]]] = {
     'bare node, recording': recording_bare_command,
     '`sim_node`, recording': node_command,
 }
-BARE, RECORDING_BARE, SIMULATING = COMMANDS
+_, RECORDING_BARE, SIMULATING = COMMANDS
 
 
 @contextmanager

@@ -8,19 +8,19 @@ All beside two busy processes, in turns, in one run.
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from stickslip_sim.realtime.scheduling import Scheduling, StepThread
 
 from . import kernel
 from .measure import measure, summary
-from .process import CONTROLLED, RECORDING_BARE, SIMULATING
+from .process import RECORDING_BARE, SIMULATING
 
 PRIORITY = 80
 RATES = (1000.0, 4000.0)
 BUSY = 2
-LOOP, KERNEL = 'bare loop in Python, no ROS', 'cyclictest'
+LOOP, KERNEL = 'bare loop in Python, no ROS', 'cyclictest'   # of rt-tests (Debian: apt install rt-tests)
 Figures = dict[str, float]
 
 
@@ -29,16 +29,16 @@ def missing() -> str:
     return '; '.join(StepThread(Scheduling(thread_priority=PRIORITY)).missing)
 
 
-def compare(seconds: float, repeats: int, show: Callable[[str, Figures], object]) -> dict[str, dict[str, Figures]]:
+def compare(seconds: float, repeats: int, show: Callable[[str, Figures], object]) -> dict[float, dict[str, Figures]]:
     """Return the figures of each case by rate and name; without SCHED_FIFO all run as any process does."""
     priority = 0 if missing() else PRIORITY
     cases = dict(_cases(seconds, priority))
-    found: dict[str, dict[str, list[Figures]]] = {f'{rate:g}': {name: [] for name in cases} for rate in RATES}
+    found: dict[float, dict[str, list[Figures]]] = {rate: {name: [] for name in cases} for rate in RATES}
     with busy():
         for rate in RATES:
             for _ in range(repeats):
                 for name, case in cases.items():
-                    found[f'{rate:g}'][name].append(figures := case(rate))
+                    found[rate][name].append(figures := case(rate))
                     show(f'{name}, {rate:g} 1/s', figures)
     return {rate: {name: summary(runs) for name, runs in by_name.items()} for rate, by_name in found.items()}
 
@@ -69,27 +69,3 @@ def _bare_loop(rate: float, seconds: float, priority: int) -> Figures:
                            str(seconds), '--priority', str(priority)], check=True, stdout=subprocess.PIPE, text=True)
     figures: Figures = json.loads(done.stdout)
     return figures
-
-
-def section(found: Mapping[str, Mapping[str, Mapping[str, float]]], seconds: float, repeats: int, why_not: str
-            ) -> list[str]:
-    """Return the lines of the page."""
-    lines = ['## Beside busy processes, at real-time priority', '',
-             f'In turns, {seconds:g} s each, {repeats} times, beside {BUSY} processes that are always busy; the thread'
-             ' that keeps', f'the time has SCHED_FIFO {PRIORITY}, the others of its process the priority below.  The'
-             ' node and the', f'bare node record, and a controller {CONTROLLED}.', '']
-    if why_not:
-        lines += [f'**Without the priority**, which this machine did not grant: {why_not}.', '']
-    if not kernel.is_there():
-        lines += [f'{kernel.INSTALL}.', '']
-    for rate, by_name in found.items():
-        lines += [f'At {rate} 1/s:', '', '| what keeps the time | late by more than a period, % | lateness p50, µs |'
-                  ' p99 | max | max / that of cyclictest |', '|---|---|---|---|---|---|',
-                  *(_row(name, figures, by_name.get(KERNEL)) for name, figures in by_name.items()), '']
-    return lines[:-1]
-
-
-def _row(name: str, figures: Mapping[str, float], of_kernel: Mapping[str, float] | None) -> str:
-    p50, p99, worst = (f'{figures[f"lateness_{level}"] * 1e6:.0f}' for level in ('p50', 'p99', 'max'))
-    ratio = f'{figures["lateness_max"] / of_kernel["lateness_max"]:.1f}' if of_kernel else '–'
-    return f'| {name} | {figures["overruns"] * 1e2:.3f} | {p50} | {p99} | {worst} | {ratio} |'

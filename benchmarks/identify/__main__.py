@@ -1,8 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measure what `stickslip identify` finds on axes whose truth is known, beside others; write the page.
+"""Measure what `stickslip identify` finds on axes whose truth is known: docs/data/identification.json.
 
-    python3 -m benchmarks.identify [--axes 100] [--varied 200] [--rivals 5] [--seed 0] [--out PAGE]
+    python3 -m benchmarks.identify [--axes 100] [--varied 200] [--rivals 5] [--seed 0] [--out FILE]
 
 What is done is kept in runs/identify/, and a run that was ended goes on from there; `--again` begins anew.
 """
@@ -13,11 +13,12 @@ import sys
 from pathlib import Path
 
 from ..loop import machine
+from ..measured import DATA, keep
+from . import figures
 from .axes import SyntheticAxis, axes
 from .foreign import identify_lugre
 from .measuring import OTHERS
 from .outcomes import Outcome, load, outcome_of, save
-from .page import page
 from .rivals import METHODS, OURS, RivalOutcome, our_outcomes, rival_outcome
 from .varied import varied_axes
 
@@ -25,7 +26,7 @@ KEPT = Path('runs/identify')
 
 
 def main() -> None:
-    """Measure and write."""
+    """Measure, and keep the figures."""
     options = parse()
     drawn = axes(options.axes, options.seed)
     outcomes = identify_all(drawn, KEPT / f'seed_{options.seed}.json', options.again)
@@ -37,9 +38,15 @@ def main() -> None:
     few = drawn[:options.rivals]
     kept = KEPT / f'rivals_{options.seed}.json'
     rivals = {OURS: our_outcomes(outcomes[:len(few)]), **rivals_on(few, kept, options.again)}
-    text = page(outcomes, others, varied, rivals, identify_lugre(), machine(), options.seed)
-    options.out.write_text(text, encoding='utf-8')
-    print(text)
+    foreign = identify_lugre()
+    keep(options.out, command=f'python3 -m benchmarks.identify --axes {options.axes} --seed {options.seed}',
+         machine=machine(), synthetic=figures.synthetic(outcomes), sensors=figures.by_sensors(others),
+         by_model=figures.by_model(outcomes), by_parameter=figures.by_parameter(outcomes),
+         varied=figures.of_every_kind(varied), not_right=figures.not_right([*outcomes, *varied]),
+         rivals=figures.beside(rivals), foreign={
+             'fits': foreign.fits, 'statements': foreign.statements, 'true_slips': foreign.true_slips,
+             'found_slips': foreign.found_slips, 'cpu': foreign.seconds},
+         foreign_slips=figures.foreign_slips(foreign))
 
 
 def identify_all(drawn: list[SyntheticAxis], kept: Path, again: bool) -> list[Outcome]:
@@ -82,7 +89,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument('--rivals', type=int, default=5, help='axes on which the others run [%(default)s]')
     parser.add_argument('--seed', type=int, default=0, help='[%(default)s]')
     parser.add_argument('--again', action='store_true', help='measure all again')
-    parser.add_argument('--out', type=Path, default=Path('docs/identification_figures.md'), help='[%(default)s]')
+    parser.add_argument('--out', type=Path, default=DATA / 'identification.json', help='[%(default)s]')
     options = parser.parse_args()
     if not 1 <= options.axes <= 10_000 or min(options.varied, options.rivals) < 0 or options.seed < 0:
         parser.error('give --axes 1 to 10000, and --varied, --rivals and --seed of at least 0')

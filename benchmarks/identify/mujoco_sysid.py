@@ -23,7 +23,6 @@ from .axes import RANGE, SyntheticAxis, value_of
 from .measuring import Measurement
 from .stepped import RivalFit, SteppedResiduals
 
-INSTALL = "pip install 'mujoco[sysid]'"
 STEP = 1e-3          # s, that of the samples
 _VISCOUS = 0.3       # s/m, times the normal force: where its search for viscous friction starts
 _MOST_STEPS = 200    # of its optimizer: its default

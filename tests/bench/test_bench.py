@@ -12,6 +12,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from benchmarks.accuracy import row
+from benchmarks.measured import kept
 from stickslip_sim.axis import InitialState
 from stickslip_sim.bench.contestants import exact_solver
 from stickslip_sim.bench.outside import FIRST_SLIP, Ratio, at_least, at_most, ratios
@@ -176,6 +178,9 @@ def test_the_tool_runs_quickly_and_writes_everything(tmp_path: Path, capsys: pyt
     assert [case['name'] for case in data['cases']] == ['paper_fig7']
     assert {path.name for path in tmp_path.iterdir()} == {
         'bench.json', 'bench.md', 'trade_scenes.png', 'trade_scenes.svg'}
+    rows = [row(case['name'], raced) for case in data['cases'] for raced in case['rows']]
+    assert [*rows[0]] == [*kept('races')['rows'][0]]
+    assert all((one['cost'] is None) == bool(one['note']) for one in rows)
 
 
 def test_an_unknown_scene_is_refused_with_the_names(capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 import pytest
 from click import Context
 
-from benchmarks import identification, maps
+from benchmarks import identification, maps, measured
 from benchmarks.page import part_of, quoted, replaced, shown
 from dev.api import LISTS, quality
 from dev.files import ROOT
@@ -54,6 +54,20 @@ class TestMade:
     def test_a_page_without_a_place_for_a_part_is_refused(self, text: str) -> None:
         with pytest.raises(ValueError, match='lacks <!-- verbs: begin -->'):
             replaced(text, 'verbs', '')
+
+    def test_the_measured_tables_follow_the_data(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        """A program that keeps new figures fills the page with them, and what it keeps is read back."""
+        for file in measured.DATA.iterdir():
+            (tmp_path / file.name).write_bytes(file.read_bytes())
+        (tmp_path / 'measured.md').write_text(text_of('docs/measured.md'))
+        monkeypatch.setattr(measured, 'DATA', tmp_path)
+        monkeypatch.setattr(measured, 'PAGE', tmp_path / 'measured.md')
+        soak = measured.kept('soak')
+        assert measured.page() == text_of('docs/measured.md')
+        soak['rows'][0]['measured'] = 4.75
+        measured.keep(tmp_path / 'soak.json', **soak)
+        assert measured.kept('soak') == soak
+        assert '| 4.75 | 5 |' in (tmp_path / 'measured.md').read_text()
 
     @pytest.mark.parametrize(('name', 'row'), [
         ('verbs', '| `call inject-fault` | `KIND` |'),

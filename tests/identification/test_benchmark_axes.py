@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from benchmarks.identify.axes import FARTHEST, FREE, NEAREST, SyntheticAxis, axes, value_of
+from benchmarks.identify.figures import not_right, of_every_kind
 from benchmarks.identify.foreign import LuGreAxis
 from benchmarks.identify.measuring import OTHERS, Sensors, measure
 from benchmarks.identify.outcomes import Outcome, ParameterOutcome, load, models_of, outcome_of, save
-from benchmarks.identify.page import of_every_kind
 from benchmarks.identify.varied import FEEDS, SENSORS, kind_of, varied_axes
 from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE
 from stickslip_sim.inputs.measurement import Measurement
@@ -80,15 +80,17 @@ def test_axes_of_every_kind_have_each_feed_and_sensor_and_a_truth_in_range() -> 
             assert free.low < value_of(axis.truth, free.name) < free.high
 
 
-def test_the_page_counts_what_is_rejected_and_far_off() -> None:
+def test_the_data_counts_what_is_rejected_and_far_off() -> None:
     wide, near, far = (ParameterOutcome('axis.mass', 100.0, 80.0, 104.0, 104.0 - side, 104.0 + side, kind)
                        for side, kind in ((1.0, FOUND), (0.1, NOT_IDENTIFIABLE), (0.1, FOUND)))
     assert (wide.is_far, near.is_far, far.is_far) == (False, False, True)
     found = [Outcome('constant 0', ('rigid', 'kato', 'table'), (wide, near), True, 1.5, 700),
              Outcome('steps 1', ('rigid', 'kato', 'table'), (far,), False, 1.5, 700)]
-    lines = of_every_kind(found)
-    assert '| without noise | 2 | 1 | 67 % | 0 % | 1 | 1.5 s |' in lines
-    assert '* steps 1 (rigid, kato, table): rejected' in lines
+    row, *_ = of_every_kind(found)
+    assert row == {'axes': 'without noise', 'number': 2, 'rejected': 1, 'found': pytest.approx(2 / 3), 'covered': 0.0,
+                   'far_off': 1, 'cpu': 1.5}
+    assert not_right(found) == ['steps 1 (rigid, kato, table): rejected',
+                                'steps 1 (rigid, kato, table): axis.mass off by 4.00%']
     assert not of_every_kind([])
 
 

@@ -54,7 +54,7 @@ def marks_table(figures: Sequence[Json]) -> str:
 
 
 def markdown(data: Json) -> str:
-    """Return the page that `bench.md` holds, and docs/accuracy_tables.md between its markers."""
+    """Return the page that `bench.md` holds."""
     return '\n'.join(markdown_lines(_page(data), level=3))
 
 

@@ -132,21 +132,13 @@ def row(outcome: ExtremeResult) -> list[str]:
 
 
 def markdown_text(outcomes: Sequence[ExtremeResult], quick: bool) -> str:
-    """Return the page `docs/extremes.md`."""
+    """Return the table as a page."""
     met = sum(outcome.passed for outcome in outcomes)
-    size = ' --quick' if quick else ''
     known = ', '.join(f'{name} {version}' for name, version in versions().items())
     rows = [(found.extreme.number, found.extreme.name, found.extreme.elsewhere, found.extreme.mark,
              found.finding.figure, 'yes' if found.passed else '**no**') for found in outcomes]
     page = Section('The extremes', [
-        'See here how this engine does in the cases that break other simulators: each case has a mark and the\n'
-        f'measured figure.  `stickslip extremes{size} --out docs/extremes.md` writes this page; `make extremes`\n'
-        'measures again and fails when a mark is missed.',
-        f'{met} of {len(outcomes)} marks met; {known}.',
-        'The column "elsewhere" was measured on the paper\'s data with scipy 1.17, SUNDIALS CVODE (scikit-sundae\n'
-        '1.2), heyoka 7.13, MuJoCo 4.0 and Drake 1.51, or is taken from their documentation and issues.  From X22\n'
-        'on it has the results of stickslip 0.1.0; [an attack](accuracy_method.md#what-an-attack-found) found\n'
-        'these.',
+        f'`stickslip extremes{" --quick" if quick else ""}`: {met} of {len(outcomes)} marks met; {known}.',
         Table(('#', 'extreme', 'elsewhere', 'mark', 'measured', 'met'), rows)])
     return '\n'.join(markdown_lines([page], level=1))
 

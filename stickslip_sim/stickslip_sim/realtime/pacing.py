@@ -38,7 +38,7 @@ class SteadyClock:
 
 
 def wake_precisely() -> None:
-    """Let the kernel wake this thread when it is due; it may be 50 µs late by default (docs/loop.md has the effect)."""
+    """Let the kernel wake this thread when it is due; it may be 50 µs late by default (docs/measured.md)."""
     with suppress(OSError, AttributeError):    # of Linux only
         ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
 
