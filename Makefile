@@ -22,10 +22,10 @@ help:  ## list the targets
 build:  ## set up ros2_ws: ROS 2 from wheels, both packages with colcon
 	@ros2_ws/bootstrap
 
-run: build  ## run the node on the paper's scene, drive it, record it, show what happened
+run: build  ## run the node for 10 s, drive it, record it, plot the run
 	@$(HERE) python3 -m stickslip_sim.ros.demo
 
-test: tools  ## all tests, PROCESSES=4 at once, each in a ROS domain of its own
+test: tools  ## all tests, in PROCESSES=4 processes with their own ROS domains
 	@OPENBLAS_NUM_THREADS=1 $(HERE) python3 -m pytest tests --dist loadfile --no-loadscope-reorder --max-worker-restart 9 --tx '$(PROCESSES)*popen//python=$(HERE) --own-domain python3'
 
 check: tools  ## style, types, architecture, dead code, spelling, words and links
@@ -37,7 +37,7 @@ check: tools  ## style, types, architecture, dead code, spelling, words and link
 	@$(TOOLS)/python -m dev.links
 	@$(TOOLS)/mkdocs build
 
-extremes: tools  ## what breaks other simulators, measured beside its mark (minutes); fails when one is missed
+extremes: tools  ## the cases that break other simulators, against their limits (minutes)
 	@$(HERE) python3 -m stickslip_sim extremes
 
 bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/data/ (25 minutes)
@@ -59,31 +59,31 @@ hil: build  ## the node with a controller beside it: against a bare rclpy node, 
 soak: build  ## the node, recording, with a controller beside it for MINUTES=10; writes docs/data/, fails when a limit is missed
 	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.soak --minutes $(MINUTES)
 
-cnc: tools  ## two axes under LinuxCNC's own motion and PID: a circle's figures; says so where LinuxCNC is not installed
+cnc: tools  ## a circle with two axes under LinuxCNC, if installed
 	@$(HERE) python3 -m dev.cnc
 
-fuzz: tools  ## made-up files and runs for MINUTES=10; fails when one is not read or refused in one line, or runs wrong
+fuzz: tools  ## random files, bags and messages for MINUTES=10: each is read, or refused in one line
 	@$(HERE) python3 -m tests.fuzz --minutes $(MINUTES)
 
-hostile: tools  ## scenes near all that an event search may miss, for MINUTES=10, with SEED=; fails when one is found wrong
+hostile: tools  ## scenes near every degeneracy of the event search, for MINUTES=10, with SEED=
 	@$(HERE) python3 -m tests.hostile --minutes $(MINUTES) $(if $(SEED),--seed $(SEED))
 
-goldens: tools  ## what every verb writes for every scene, into runs/goldens/TO=now; compared with those of FROM=
+goldens: tools  ## output of every verb for every scene, into runs/goldens/TO=now; compared with FROM=
 	@$(HERE) python3 -m dev.goldens runs/goldens/$(or $(TO),now) $(if $(FROM),--against runs/goldens/$(FROM))
 
-mutants: tools  ## small errors in a copy of the package, one by one: is each killed by the test that is named for it?
+mutants: tools  ## small errors in a copy of the package: does the named test catch each?
 	@$(HERE) --own-domain python3 -m dev.mutants
 
-timings: tools  ## start of tool and node, an hour offline: medians into runs/goldens/TO=now, beside those of FROM=
+timings: tools  ## start-up times and an hour offline, into runs/goldens/TO=now; compared with FROM=
 	@$(HERE) --own-domain --shared-memory python3 -m dev.timings runs/goldens/$(or $(TO),now) $(if $(FROM),--against runs/goldens/$(FROM))
 
 pages: tools  ## docs/api.md, docs/scene.md and the packages' changelogs from the code, docs/measured.md from docs/data/
 	@$(HERE) python3 -m dev.pages
 
-docs: tools  ## the pages in docs/ as a site in runs/docs/
+docs: tools  ## build the site from docs/ into runs/docs/
 	@$(TOOLS)/mkdocs build && $(HERE) python3 -m stickslip_sim explore paper_fig8 --out runs/docs/explorer.html && echo runs/docs/index.html
 
-clean:  ## remove everything that was set up, built or cached in this tree
+clean:  ## remove everything set up, built or cached in this folder
 	rm -rf ros2_ws/{.venv,build,install,log} runs .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
 	rm -rf stickslip_sim/build stickslip_sim/stickslip_sim/_hot.* stickslip_sim/stickslip_sim/_{text,standstill,fmu}.*
 	find . -name __pycache__ -prune -exec rm -rf {} +

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The lists of docs/api.md: every public name, taken from what the programs themselves use."""
+"""The lists of docs/api.md and docs/tool.md: every public name, taken from what the programs themselves use."""
 
 import inspect
 import re
@@ -18,6 +18,17 @@ from stickslip_sim.scene.schema import PARAMETERS
 from .files import ROOT
 
 PAGE = ROOT / 'docs/api.md'
+_TOOL_PAGE = ROOT / 'docs/tool.md'
+_PAGES_OF_VERBS = {   # where docs/tool.md sends a reader for more
+    'scenes': 'scene.md', 'simulate': 'receipt.md', 'close-loop': 'closed_loop.md',
+    'tune': 'closed_loop.md#why-does-my-loop-swing', 'import': 'runs.md#a-measured-run',
+    'call': 'hil.md#topics-and-services', 'explore': 'explore.md', 'plot': 'runs.md#as-a-picture',
+    'compare': 'paper.md', 'export': 'runs.md', 'export-c': 'c.md', 'export-fmu': 'fmu.md', 'export-hal': 'linuxcnc.md',
+    'check': 'check.md', 'verify': 'runs.md', 'critical': 'maps.md', 'sweep': 'maps.md', 'map': 'maps.md',
+    'uncertainty': 'maps.md#uncertain-friction', 'friction': 'friction_curve.md', 'identify': 'identification.md',
+    'predict': 'identification.md', 'design': 'sensitivities.md', 'advise': 'accuracy.md',
+    'bench': 'measured.md#races', 'extremes': 'measured.md#extremes',
+}
 _MESSAGES = ROOT / 'stickslip_msgs'
 _OF_THE_NODE, _OF_THE_PLAYER = 'ros/node/*.py', 'ros/replay/node.py'
 _SERVICE = re.compile(r"create_service\((?:srv\.)?(\w+), '(~/\w+)'")
@@ -36,6 +47,13 @@ def verbs() -> str:
     rows = [_verb(name, command) for commands in tool.sections.values() for one in commands
             for name, command in _with_their_own(one)]
     return _table(('verb', 'arguments', 'options'), rows)
+
+
+def tool_page() -> str:
+    """Return the text of docs/tool.md with a row for each verb: what its help says in a line, and its page."""
+    rows = [(f'`{one.name}`', one.get_short_help_str(200), f'[{page.partition(".")[0].replace("_", " ")}]({page})')
+            for commands in tool.sections.values() for one in commands if (page := _PAGES_OF_VERBS[one.name or ''])]
+    return replaced(_TOOL_PAGE.read_text(encoding='utf-8'), 'verbs', _table(('verb', 'does', 'more'), rows))
 
 
 def python() -> str:

@@ -14,6 +14,7 @@ MADE: Mapping[str, Callable[[], str]] = {
     'docs/api.md': api.page,
     'docs/scene.md': scene_page.page,
     'docs/measured.md': measured.page,
+    'docs/tool.md': api.tool_page,
     **{f'{package}/CHANGELOG.rst': partial(changelog.changelog, package) for package in changelog.PACKAGES},
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Two axes go round a circle in process, in both senses: the figures of ISO 230-4, and the picture.
+"""Run two axes around a circle in process, in both directions: the figures of ISO 230-4, and the picture.
 
 For example: python3 examples/circle.py --radius 0.05 --feed 0.05 --scene ball_screw --plot circle.png
 """
@@ -37,7 +37,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--radius', type=float, default=0.05, help='m')
     parser.add_argument('--feed', type=float, default=0.05, help='m/s')
-    parser.add_argument('--scene', default='ball_screw', help='of both axes')
+    parser.add_argument('--scene', default='ball_screw', help='scene of both axes')
     parser.add_argument('--plot', help='FILE.png')
     options = parser.parse_args()
     found = circle(options.scene, options.radius, options.feed)

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""A controller for the axis, to be replaced by yours: makes for 10 mm, with 10 mm/s at most."""
+"""An example controller, to be replaced by yours: moves the axis to 10 mm, at 10 mm/s at most."""
 
 import time
 from signal import SIGINT, SIGTERM, signal

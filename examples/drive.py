@@ -24,8 +24,8 @@ _UNITS = {'velocity': 'm/s', 'force': 'N'}
 def parse() -> dict[str, DriveVelocity | ExternalForce]:
     """Return what to send, by topic."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('velocity', type=float, nargs='?', help='of the drive, m/s; it is held until the next one')
-    parser.add_argument('--force', type=float, help='on the slider, N; it is held until the next one')
+    parser.add_argument('velocity', type=float, nargs='?', help='drive velocity, m/s; held until the next command')
+    parser.add_argument('--force', type=float, help='force on the slider, N; held until the next command')
     options = parser.parse_args(remove_ros_args()[1:])
     messages = {}
     if options.velocity is not None:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The controller of controller.py in lock-step: time moves when it says so; each run is the same to the last bit."""
+"""The controller of controller.py in lock-step: it advances time itself, so all runs are identical, bit for bit."""
 
 import argparse
 from signal import SIG_DFL, SIGINT, signal
@@ -12,10 +12,10 @@ from rclpy.utilities import remove_ros_args
 from stickslip_sim.core.errors import StickslipError
 from stickslip_sim.ros.lock_step import LockStep
 
-_STEPS = 5    # of the axis for each of the controller: 200 Hz beside 1 kHz
+_STEPS = 5    # of the axis per controller step: 200 Hz at 1 kHz
 
 parser = argparse.ArgumentParser(description=__doc__)
-parser.add_argument('--duration', type=float, default=2.0, help='of the run, s of simulation time')
+parser.add_argument('--duration', type=float, default=2.0, help='simulated time, s')
 duration = parser.parse_args(remove_ros_args()[1:]).duration
 
 signal(SIGINT, SIG_DFL)    # Ctrl-C ends it, also while it waits

@@ -1,9 +1,9 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Follow a setpoint on the encoders: 10 mm in 1.4 s, then rest.
+"""Follow a setpoint with encoder feedback: 10 mm in 1.4 s, then rest.
 
-The axis needs joint_interface.enabled; with time.mode lockstep its steps are made here.  The same class runs without
-ROS:
+The axis needs joint_interface.enabled.  In lock-step (time.mode) this program makes the steps.  The same class runs
+without ROS:
 stickslip close-loop examples/setpoint.py:Follower --scene positioning --duration 2 --rate 200
 """
 
@@ -14,21 +14,21 @@ from typing import Any
 from stickslip_sim.ros.executables import controller_node
 
 _TRAVEL, _TIME, _REST = 0.010, 1.4, 0.6    # m, s, s
-_GAIN = 10.0                               # 1/s: velocity for an error of the position
-_RATE = 200                                # Hz, beside an axis of 1 kHz
+_GAIN = 10.0                               # 1/s: velocity per position error
+_RATE = 200                                # Hz, on an axis of 1 kHz
 
 
 class Follower:
-    """Has an answer to each measurement: the velocity of the setpoint, and more where the slider is behind."""
+    """Setpoint velocity plus a proportional correction of the position error."""
 
     def reset(self) -> None:
-        """Begin anew, where the slider is then."""
+        """Start a new move at the next measured position."""
         self._origin: float | None = None
         self._velocity = self._worst = 0.0    # m/s; m, the largest error so far
         self._is_done = False
 
     def __call__(self, t: float, measured: Any) -> float:
-        """Return the velocity of the drive, m/s, at a time of the move, s; the latest one while nothing is measured."""
+        """Return the drive velocity (m/s) at a time of the move (s); repeat it while measurements are lost."""
         if measured.is_lost:
             return self._velocity
         if self._origin is None:

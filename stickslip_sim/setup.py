@@ -74,7 +74,7 @@ setup(
     cmdclass=COMMANDS,
     ext_modules=extensions(),
     version='1.0.1',
-    description='Stick-slip of a feed axis in real time: exact engine, ROS 2 node, offline tool',
+    description='Feed-axis simulator with stick-slip friction: exact engine, ROS 2 node and command-line tool',
     maintainer='The stickslip developers',
     maintainer_email='stickslip@example.org',
     license='Apache-2.0',

@@ -1,7 +1,8 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What README and docs/hil.md have a newcomer do: `make run`, the examples, the first minutes with a human's delays."""
+"""First steps of README and docs/hil.md: `make run`, its commands, the examples, five minutes with a human's delays."""
 
+import importlib.util
 import re
 import shlex
 import signal
@@ -9,12 +10,15 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+import stickslip_sim as stickslip
+from stickslip_sim.check.observed_run import timing_of
 from stickslip_sim.recording import open_bag
-from tests.support.node_processes import executable, recording_into, running
+from tests.support.node_processes import attentive, executable, recording_into, running
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered, restore_interrupt
@@ -25,6 +29,9 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 DRIVE, SETPOINT, CONTROLLER, LOCKSTEP = (ROOT / 'examples' / f'{name}.py'
                                          for name in ('drive', 'setpoint', 'controller', 'lockstep'))
 ENCODERS = ('-p', 'drive.velocity:=0.0', '-p', 'joint_interface.enabled:=true', '-p', 'encoder.resolution:=1.0e-6')
+README_AXIS, *README_COMMANDS = (
+    shlex.split(line, comments=True) for line in re.findall(r'^    (\S.*)$', (ROOT / 'README.md').read_text(
+        encoding='utf-8').partition('### You know ROS')[2].partition('The wheels lack')[0], re.MULTILINE))
 
 
 def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -57,38 +64,55 @@ class TestDemonstration:
     def test_it_records_and_has_nothing_to_complain_of(self, tmp_path: Path) -> None:
         done = python('-m', 'stickslip_sim.ros.demo', '--duration', '1', '--out', tmp_path)
         assert (done.returncode, done.stderr) == (0, '')
-        assert re.search(r'^verdict  real-time valid: (yes|no), worst ', done.stdout, re.MULTILINE)
+        verdict = re.search(r'^verdict  real-time valid: (yes|no), worst ', done.stdout, re.MULTILINE)
+        assert verdict is not None
+        assert ('lock-step is the way ' in done.stdout) == (verdict[1] == 'no')
         [folder] = tmp_path.iterdir()
         assert (folder / 'run.png').stat().st_size > 10_000
         assert open_bag(folder).receipt is not None    # it was closed
 
-    @pytest.mark.parametrize(('most', 'verdict'), [('1e-9', 'no'), ('60.0', 'yes')])
-    def test_late_steps_are_no_wrong_motion(self, most: str, verdict: str, tmp_path: Path) -> None:
-        """What it says of a run whose steps were late, by limits that no machine keeps."""
-        from stickslip_sim.ros.demo import report
-        limits = '-p', f'timing.max_lateness:={most}', '-p', 'timing.max_overruns:=1.0'
-        with running(*recording_into(tmp_path / verdict), *limits) as process, client() as axis:
+    def test_late_steps_are_no_wrong_motion(self, tmp_path: Path) -> None:
+        """Its report on a run whose steps were late, by limits that no machine keeps; no such advice otherwise."""
+        from stickslip_sim.ros.demo import real_time_lines
+        with running(*recording_into(tmp_path / 'late'), 'timing.max_lateness:=1e-9') as process, client() as axis:
             axis.connect()
             assert process.end()[0] == 0
-        said = '\n'.join(report(tmp_path / verdict))
-        assert f'verdict  real-time valid: {verdict}, ' in said
-        assert [words in said for words in ('the motion is right, the timing was late, ', 'lock-step is the way ')
-                ] == 2 * [verdict == 'no']
+        timing = timing_of(stickslip.read_run(tmp_path / 'late'))
+        assert timing is not None
+        verdict, *advice = real_time_lines(timing)
+        assert verdict.startswith('verdict  real-time valid: no, ')
+        assert 'lock-step is the way ' in ' '.join(advice)
+        assert len(real_time_lines(replace(timing, valid=True))) == 1
 
 
 @pytest.fixture(scope='class')
 def axis(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
-    with running(folder=tmp_path_factory.mktemp('axis')), client() as it:
+    """The axis of README, at a tenth of its rate."""
+    program, flag, *words = README_AXIS
+    assert (Path(program).name, flag) == ('sim_node', '--ros-args')
+    with running(*words, 'time.rate:=100.0', folder=tmp_path_factory.mktemp('axis'), prepare=attentive
+                 ), client() as it:
         it.connect()
         yield it
 
 
 class TestDrive:
-    def test_what_is_sent_holds(self, axis: Client) -> None:
-        done = python(DRIVE, '0.005', '--force', '400')
+    def test_the_commands_of_the_readme(self, axis: Client, capsys: Capture) -> None:
+        (program, script, velocity), inject, off = README_COMMANDS
+        assert (program, script, inject[0], off[0]) == ('python3', 'examples/drive.py', 'stickslip', 'stickslip')
+        done = python(ROOT / script, velocity)
         assert done.returncode == 0, done.stderr
-        assert done.stderr.splitlines()[-1].endswith('taken: velocity = 0.005 m/s, force = 400.0 N')
-        wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.005, 'its effect')
+        wait_for(lambda: axis.latest('slider_state').drive_velocity == float(velocity), 'its effect')
+        assert answered(capsys, *inject[1:])[1].startswith('friction_scale_1 (friction_scale 1.5) begins ')
+        code, said, errors = answered(capsys, *off[1:])
+        assert code == 0, errors
+        assert answered(capsys, 'verify', said.split()[-1])[1].startswith('identical, ')
+
+    def test_what_is_sent_holds(self, axis: Client) -> None:
+        done = python(DRIVE, '0.004', '--force', '400')
+        assert done.returncode == 0, done.stderr
+        assert done.stderr.splitlines()[-1].endswith('taken: velocity = 0.004 m/s, force = 400.0 N')
+        wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.004, 'its effect')
 
     @pytest.mark.parametrize('value', ['5.0', 'nan'])
     def test_a_refused_value_is_an_error_of_the_sender(self, axis: Client, value: str) -> None:
@@ -110,8 +134,9 @@ def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
     """In a namespace where there is none, and where there is one; all at once, as each takes its time."""
     nowhere = '--ros-args', '-r', '__ns:=/nowhere'
     with ExitStack() as ended:
-        ended.enter_context(running('-r', '__ns:=/cell'))
-        ended.enter_context(client('/cell')).connect()
+        ended.enter_context(running('-r', '__ns:=/cell', 'time.rate:=100.0'))
+        with client('/cell') as found:
+            found.connect()
         waiting = [ended.enter_context(started(sys.executable, *example, *nowhere)) for example in (
             [CONTROLLER], [SETPOINT], [LOCKSTEP], [DRIVE, '0.001'])]
         for each in waiting:
@@ -126,7 +151,7 @@ def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
 class TestSetpoint:
     def test_it_is_followed_on_the_encoders(self, tmp_path: Path) -> None:
         moved: list[float] = []
-        with running(*ENCODERS, folder=tmp_path), client() as axis:
+        with running(*ENCODERS, 'time.rate:=400.0', folder=tmp_path), client() as axis:    # the example has 200
             axis.connect()
             for _ in range(3):    # one that waits a second for a core goes too far
                 begin = axis.latest('slider_state').position
@@ -138,22 +163,27 @@ class TestSetpoint:
                     break
         assert abs(moved[-1] - 0.010) < 1e-3, moved
 
-    def test_and_in_lock_step_to_the_last_bit(self, tmp_path: Path) -> None:
+    def test_and_in_lock_step_as_without_ros_to_the_last_digit(self, tmp_path: Path, capsys: Capture) -> None:
         with running(*ENCODERS, '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
-            runs = [python(SETPOINT, '--ros-args', '-r', '__ns:=/stepped') for _ in range(2)]
-        assert [run.returncode for run in runs] == [0, 0], runs
-        first, second = (run.stderr.rpartition(']: ')[2] for run in runs)
-        assert first == second == 'done: 2000 steps, t = 2 s\n'
-        assert runs[0].stdout == runs[1].stdout
-        assert runs[0].stdout.startswith('there: the largest error was 1.')
-        assert runs[0].stderr.count('connected to /stepped/feed_axis') == 1
+            done = python(SETPOINT, '--ros-args', '-r', '__ns:=/stepped')
+        assert done.returncode == 0, done.stderr
+        assert done.stderr.rpartition(']: ')[2] == 'done: 2000 steps, t = 2 s\n'
+        assert done.stdout.startswith('there: the largest error was 1.')
+        assert done.stderr.count('connected to /stepped/feed_axis') == 1
+        example = importlib.util.spec_from_file_location('setpoint', SETPOINT)
+        assert example is not None
+        assert example.loader is not None
+        example.loader.exec_module(module := importlib.util.module_from_spec(example))
+        scene = stickslip.load_scene('paper_fig8', {'drive.velocity': 0.0, 'encoder.resolution': 1e-6})
+        stickslip.close_loop(module.Follower(), scene, duration=2.0, rate=200.0)
+        assert capsys.readouterr().out.endswith(done.stdout)    # what the node logged stands before it
 
     def test_and_with_measurements_that_get_lost(self, tmp_path: Path) -> None:
         lost = [f'-p faults.{name}:=[{value}]' for name, value in (
             ('ids', '"lost"'), ('kinds', '"encoder_dropout"'), ('starts', '0.2'), ('durations', '0.4'),
             ('values', '1.0'))]
         words = [word for words in lost for word in words.split()]
-        with running(*ENCODERS, *words, '-p', 'time.mode:=lockstep', folder=tmp_path):
+        with running(*ENCODERS, *words, 'time.rate:=400.0', 'time.mode:=lockstep', folder=tmp_path):
             done = python(SETPOINT)
         assert done.returncode == 0, done.stderr
         assert re.match(r'there: the largest error was [1-9]\.', done.stdout)
@@ -162,7 +192,7 @@ class TestSetpoint:
 class TestFiveMinutes:
     """The first minutes of docs/hil.md: its commands, one after the other."""
 
-    HUMAN = 3.0      # s from the start of the axis to that of the controller: beyond the window of any limits from 0 on
+    HUMAN = 2.2      # s from the start of the axis to that of the controller: beyond the window of any limits from 0 on
     CHECKED = 2.0     # s, in examples/controller_limits.yaml
     SAID = r'(\[WARN\].*: waiting for an axis: .*\n)?.*: connected: .*\n'    # the first where it waits for 2 s
     PAGE = (ROOT / 'docs/hil.md').read_text(encoding='utf-8')
@@ -194,7 +224,7 @@ class TestFiveMinutes:
         assert not self.CHECK[2].startswith(f'runs/{DEMO_SCENE}_')
 
     def test_a_controller_that_is_started_by_hand_is_checked(self, capsys: Capture) -> None:
-        with started(executable('sim_node'), *self.AXIS[1:]) as axis, client() as listener:
+        with running(*self.AXIS[2:], 'time.rate:=500.0') as axis, client() as listener:    # for half the cost
             listener.next('slider_state', lambda state: state.time > self.HUMAN)
             assert listener.latest('slider_state').drive_velocity == 0.0    # it rests until the first command
             with started(sys.executable, *self.CONTROLLER[1:]) as controller:
@@ -202,7 +232,7 @@ class TestFiveMinutes:
                 listener.next('slider_state', lambda state: state.time > first + self.CHECKED + 0.1)
                 assert re.fullmatch(self.SAID, interrupt(controller))
                 listener.next('slider_state', lambda state: state.drive_velocity == 0.0)
-            said = interrupt(axis)
+            _, said = axis.end()
         code, lines, errors = self.check(capsys)
         assert code == 3, errors
         head, verdict, *_, last = lines

@@ -23,6 +23,7 @@ from tests.support.tool import Capture, answered
 
 pytestmark = pytest.mark.slow
 
+README = (ROOT / 'README.md').read_text(encoding='utf-8')
 MAPS, IDENTIFICATION, PYTHON, CLOSED_LOOP = ((ROOT / 'docs' / f'{name}.md').read_text(encoding='utf-8')
                                              for name in ('maps', 'identification', 'python', 'closed_loop'))
 
@@ -42,6 +43,18 @@ def done(capsys: Capture, command: str) -> str:
     return out
 
 
+def test_the_first_results_of_the_readme(clone: Path, capsys: Capture) -> None:
+    """The commands of its ways in; those that need a node are in test_first_steps.py."""
+    text = README.replace('\\\n', ' ')
+    explore, *commands = re.findall(r'(?:^    |`)stickslip (?!call)([^`\n]+)', text, re.MULTILINE)
+    assert [command.split()[0] for command in commands] == ['close-loop', 'friction', 'simulate', 'critical']
+    said = [done(capsys, command) for command in (explore, *commands)]
+    assert 'best: exponential' in said[2]
+    assert 'stick-slip below' in said[4]
+    assert (clone / 'runs/loop.png').read_bytes().startswith(b'\x89PNG')
+    assert (clone / 'explore.html').stat().st_size > 100_000
+
+
 def test_the_blocks_of_python(clone: Path, capsys: Capture) -> None:
     pytest.importorskip('pandas')
     names: dict[str, object] = {}
@@ -57,11 +70,13 @@ def test_the_blocks_of_python(clone: Path, capsys: Capture) -> None:
         assert (clone / picture).read_bytes().startswith(b'\x89PNG')
 
 
-def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
+def test_the_closed_loop(clone: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
     """The class in a file, the run in Python, and the commands one after the other."""
-    controller, loop, tuned, many, lanes = blocks('python')
+    write_inputs(clone)
+    monkeypatch.syspath_prepend(clone)
+    _, loop, tuned, many, lanes = blocks('python')
     names: dict[str, Any] = {}
-    for block in (controller + loop, tuned, many):
+    for block in (loop, tuned, many):
         exec(block, names)
         assert capsys.readouterr().out in CLOSED_LOOP.replace('    ', '')
     report = text_lines(tuning_report(names['found']))    # what the command prints
@@ -70,7 +85,6 @@ def test_the_closed_loop(clone: Path, capsys: Capture) -> None:
     assert names['loops'].pass_rate.passed == 64
     for picture in ('run.png', 'tune.png'):
         assert (clone / picture).read_bytes().startswith(b'\x89PNG')
-    write_inputs(clone)
     assert len(page_commands()) == 10
     for words in page_commands():
         if words[0] == 'tune':

@@ -75,7 +75,7 @@ def _write(folder: Path, data: dict[str, Any]) -> None:
                     plot_trade(panels, _TITLE, temporary)
 
 
-_TITLE = 'What every solver costs, and how wrong it is\nhollow: events missed or invented; lower left is better'
+_TITLE = 'Cost and error of each solver: lower left is better\n(hollow marks missed or invented events)'
 
 
 def _points(case: dict[str, Any]) -> dict[str, list[tuple[float, float, bool]]]:

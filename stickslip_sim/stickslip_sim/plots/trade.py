@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Cost over error of the solvers, as pictures."""
+"""Cost of the solvers over their error, as pictures."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -26,7 +26,7 @@ class SolverCurve(NamedTuple):
 def plot_trade(panels: Mapping[str, Sequence[SolverCurve]], title: str, path: Path | str) -> None:
     """Draw cost over error, a panel for each case (its name is the heading), into `path` (.png, .pdf or .svg).
 
-    Both axes are logarithmic.  An error below LEAST_ERROR is drawn there, as the axis says.
+    Both axes are logarithmic.  An error below LEAST_ERROR is drawn there, and the axis then says so.
     """
     columns = 1 if len(panels) == 1 else 2
     count = -(-len(panels) // columns)
@@ -39,9 +39,11 @@ def plot_trade(panels: Mapping[str, Sequence[SolverCurve]], title: str, path: Pa
     for panel in grid.flat[len(panels):]:
         panel.set_visible(False)
     for panel in grid[:, 0]:
-        panel.set_ylabel('cost: µs for each simulated second')
+        panel.set_ylabel('cost per simulated second (µs)')
+    is_cut = any(error < LEAST_ERROR for lines in panels.values() for line in lines for error in line.errors)
+    label = 'worst event-time error (s)' + (f', at least {LEAST_ERROR:.0e}' if is_cut else '')
     for panel in grid.flat[max(len(panels) - columns, 0):len(panels)]:
-        panel.set_xlabel(f'worst error of an event time / s (below {LEAST_ERROR:.0e}: drawn there)')
+        panel.set_xlabel(label)
         panel.xaxis.set_tick_params(labelbottom=True)
     handles = [Line2D([], [], **looks[label]) for label in labels]
     legend_outside(figure, 'lower center', handles, labels, ncols=3, frameon=False, fontsize=9, handlelength=3.5)
