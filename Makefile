@@ -8,6 +8,8 @@ DISTRO ?= jazzy
 MINUTES ?= 10
 PROCESSES ?= 4
 export DISTRO
+# The theme warns of a version of MkDocs that is not pinned here.
+export NO_MKDOCS_2_WARNING := 1
 unexport PYTHONDONTWRITEBYTECODE  # pytest rewrites three hundred files, in each process: that is to be kept
 
 SHELL := /bin/bash
@@ -28,13 +30,14 @@ run: build  ## run the node for 10 s, drive it, record it, plot the run
 test: tools  ## all tests, in PROCESSES=4 processes with their own ROS domains
 	@OPENBLAS_NUM_THREADS=1 $(HERE) python3 -m pytest tests --dist loadfile --no-loadscope-reorder --max-worker-restart 9 --tx '$(PROCESSES)*popen//python=$(HERE) --own-domain python3'
 
-check: tools  ## style, types, architecture, dead code, spelling, words and links
+check: tools  ## style, types, architecture, dead code, spelling, words, links and prose
 	@$(TOOLS)/ruff check .
 	@$(TOOLS)/mypy
 	@PYTHONPATH=stickslip_sim $(TOOLS)/lint-imports
 	@$(TOOLS)/vulture
 	@$(TOOLS)/codespell
 	@$(TOOLS)/python -m dev.links
+	@$(TOOLS)/python -m dev.prose
 	@$(TOOLS)/mkdocs build
 
 extremes: tools  ## the cases that break other simulators, against their limits (minutes)
@@ -77,7 +80,7 @@ mutants: tools  ## small errors in a copy of the package: does the named test ca
 timings: tools  ## start-up times and an hour offline, into runs/goldens/TO=now; compared with FROM=
 	@$(HERE) --own-domain --shared-memory python3 -m dev.timings runs/goldens/$(or $(TO),now) $(if $(FROM),--against runs/goldens/$(FROM))
 
-pages: tools  ## docs/api.md, docs/scene.md and the packages' changelogs from the code, docs/measured.md from docs/data/
+pages: tools  ## generate what is made from code and data: pages, tables, and the changelogs of the packages
 	@$(HERE) python3 -m dev.pages
 
 docs: tools  ## build the site from docs/ into runs/docs/

@@ -13,7 +13,6 @@ import stickslip_sim
 from benchmarks.page import replaced
 from stickslip_sim.bags import topics
 from stickslip_sim.cli.main import stickslip as tool
-from stickslip_sim.scene.schema import PARAMETERS
 
 from .files import ROOT
 
@@ -91,19 +90,8 @@ def messages() -> str:
     return _table(('interface', 'fields (→ of the answer)', 'constants'), rows)
 
 
-def parameters() -> str:
-    """Return a row for each section of a scene."""
-    rows: dict[str, list[str]] = {}
-    for entry in PARAMETERS:
-        section, _, name = entry.name.rpartition('.')
-        rows.setdefault(section, []).append(name)
-    listed = {section: ', '.join(f'`{name}`' for name in names) for section, names in rows.items()}
-    return _table(('section', 'parameters'), [(section and f'`{section}`', names) for section, names in listed.items()])
-
-
 LISTS: dict[str, Callable[[], str]] = {
     'verbs': verbs, 'python': python, 'topics': topic_list, 'services': services, 'messages': messages,
-    'parameters': parameters,
 }
 
 

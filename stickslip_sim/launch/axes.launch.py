@@ -19,11 +19,11 @@ from stickslip_sim.ros.launch_arguments import check_arguments
 # Those of sim.launch.py that are not of one axis alone: it declares them too, but --show-args cannot see that.
 ARGUMENTS = {
     'axes': ('x:positioning y:positioning', 'NAMESPACE:SCENE of each axis; a scene is a shipped one or a file'),
-    'mode': ('', 'mode of time of all axes: realtime, lockstep or free_run; empty: as in the scene'),
+    'mode': ('', 'time mode of all axes: realtime, lockstep or free_run; empty: as in the scene'),
     'rate': ('', 'steps per second of simulation time; empty: as in the scene'),
     'record': ('', 'true: record a bag of each axis from the start, below runs/; false: none; empty: as in the scene'),
-    'joints': ('', 'topic of the joint states of all axes, like /joint_states, for one robot description: each has its'
-               ' namespace as prefix (x_axis_slider); empty: no joints'),
+    'joints': ('', 'common topic of the joint states, such as /joint_states, for one robot description; the namespace'
+               ' of each axis becomes its prefix (x_axis_slider); empty: no joints'),
     'parameters': ('', "further parameters of all axes, like 'drive.velocity:=0.005 seed:=3'"),
 }
 

@@ -27,7 +27,7 @@ ARGUMENTS = {
     'scene': ('positioning', 'shipped scene of the axis, or a parameter file'),
     'controller': ('cascade_controller', 'controller that moves the axis'),
     'namespace': ('', 'namespace of both nodes and their topics'),
-    'prefix': ('', 'put before the names of the joints, as joint_interface.prefix of both'),
+    'prefix': ('', 'prefix of the joint names, joint_interface.prefix of both nodes'),
     'feed': ('0.0005', 'feed of the moves, m/s'),
     'travel': ('0.002', 'travel of a move, m'),
     'record': ('true', 'true: record a bag from the start; false: none'),

@@ -21,7 +21,7 @@ from stickslip_sim.ros.launch_arguments import check_arguments
 
 ARGUMENTS = {
     'scene': ('paper_fig8', 'shipped scene of the axis, or a parameter file'),
-    'prefix': ('', 'put before the names of the joints, links and frames, as joint_interface.prefix'),
+    'prefix': ('', 'prefix of the joints, links and frames, as joint_interface.prefix'),
     'axis': ('true', 'false: start no axis, but show those that publish on joint_states already'),
     'rviz': ('true', 'false: start no RViz, for a viewer of your own'),
     'description': ('feed_axis.urdf.xacro', 'robot description: a file of share/stickslip_sim/urdf, or a path'),

@@ -20,14 +20,14 @@ from stickslip_sim.ros.launch_arguments import check_arguments
 ARGUMENTS = {
     'scene': ('paper_fig8', 'shipped scene, or a parameter file'),
     'namespace': ('', 'namespace of the node and its topics'),
-    'mode': ('', 'mode of time: realtime, lockstep or free_run'),
+    'mode': ('', 'time mode: realtime, lockstep or free_run'),
     'rate': ('', 'steps per second of simulation time'),
     'record': ('', 'true: record a bag from the start; false: none'),
     'folder': ('', 'new folder of the bag, which must not exist; empty: one below runs/'),
     'parameters': ('', "further parameters, like 'drive.velocity:=0.005 seed:=3'"),
-    'joint_states': ('joint_states', 'topic of the joint states; with a leading slash one for axes in several'
-                     ' namespaces, which need prefixes then'),
-    'clock': ('/clock', 'topic of the clock in lockstep and free_run; without a leading slash in the namespace'),
+    'joint_states': ('joint_states', 'topic of the joint states; with a leading slash, axes in several namespaces share'
+                     ' it and need prefixes'),
+    'clock': ('/clock', 'topic of the clock in lockstep and free_run; in the namespace without a leading slash'),
 }
 PARAMETERS = {'scene': 'scene', 'mode': 'time.mode', 'rate': 'time.rate', 'record': 'record.enabled',
               'folder': 'record.folder'}

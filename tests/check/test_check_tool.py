@@ -147,7 +147,7 @@ class TestSeveral:
         assert [line.partition(': ')[0] for line in out.splitlines() if ' states, ' in line] == [str(bag), str(other)]
 
     def test_a_run_given_twice_is_refused(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
-        assert 'give each once' in refused(capsys, bag, bag, '--limits', limits_file(tmp_path, LIMITS))
+        assert 'only once' in refused(capsys, bag, bag, '--limits', limits_file(tmp_path, LIMITS))
 
 
 class TestRuns:

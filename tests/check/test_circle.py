@@ -170,7 +170,7 @@ class TestTool:
     @pytest.mark.parametrize(('arguments', 'words'), [
         ([X, Y], ["Missing option '--limits'"]),
         ([X, Y, '--circle', '--positioning'], ['exclude each other']),
-        ([X, Y, '--limits', CIRCLE, '--radius', '0.05'], ['--radius and --plot are for --circle']),
+        ([X, Y, '--limits', CIRCLE, '--radius', '0.05'], ['--radius and --plot need --circle']),
         ([X, '--circle'], ['--circle = ', 'two axes: RUN_X RUN_Y, or a bag of both']),
         ([X, Y, X, '--circle'], ['two axes: RUN_X RUN_Y']),
         ([X, Y, '--circle', '--radius', '0.0'], ['--radius = 0.0', '> 0']),

@@ -49,7 +49,7 @@ class TestCutAndDamaged:
             damaged = bytearray(data)
             damaged[stream.randrange(8, int(0.9 * end))] ^= 1 << stream.randrange(8)
             path.write_bytes(damaged)
-            with pytest.raises(StickslipError, match='damaged: it was finished'):
+            with pytest.raises(StickslipError, match='damaged: it was closed properly'):
                 read_run(path)
 
     def test_lost_messages(self, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -91,13 +91,13 @@ def without(topic: str) -> dict[str, Any]:
 
 class TestAlteredAndForeign:
     @pytest.mark.parametrize(('changes', 'reported'), [
-        (with_scene(b'axis: ['), 'its scene.yaml is none of this version'),
+        (with_scene(b'axis: ['), 'its scene.yaml is not valid in this version'),
         (with_scene(b'/**:\n  ros__parameters:\n    axis: {weight: 1.0}\n'), 'axis.weight'),
-        (with_scene(b'\xff\xfe\x00'), 'its scene.yaml is none of this version'),
-        (with_checkpoint(b'{'), 'its checkpoint.json is no JSON object'),
+        (with_scene(b'\xff\xfe\x00'), 'its scene.yaml is not valid in this version'),
+        (with_checkpoint(b'{'), 'its checkpoint.json is not a JSON object'),
         (with_checkpoint(b'{}'), "damaged or of another version: 'drive'"),
         (with_checkpoint(b'[]'), 'damaged or of another version'),
-        (with_checkpoint(b'\xff'), 'its checkpoint.json is no JSON object'),
+        (with_checkpoint(b'\xff'), 'its checkpoint.json is not a JSON object'),
         (made(), 'does not say whether a node or the tool made it'),
         (made(origin='offline', duration='long', sample_period='1/1000'), 'does not say whether'),
         (made(origin='offline', duration='3.0', sample_period='1/0'), 'does not say whether'),
@@ -108,7 +108,7 @@ class TestAlteredAndForeign:
         (defined('rest_time', 'stick_time'), 'its field stick_time is unknown here'),
         (defined('float64 rest_time', 'string rest_time'), 'has other fields than a step'),
         (defined('float64', 'float 64'), '/msg/ModeEvent cannot be read: Could not parse'),
-        ({'attachment': lambda name: None}, 'no scene.yaml travels in it'),
+        ({'attachment': lambda name: None}, 'it has no scene.yaml'),
     ])
     def test_refused(self, changes: dict[str, Any], reported: str, fig8_bag: Path, tmp_path: Path, capsys: Capture
                      ) -> None:
@@ -168,7 +168,7 @@ class TestWhatIf:
 
     def test_refused(self, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
         for words, reported in (
-                (('--out', tmp_path / 'out'), '--out is of no use alone'),
+                (('--out', tmp_path / 'out'), '--out needs --set'),
                 (('--set', 'axis.mass'), "--set = 'axis.mass'"),
                 (('--set', 'axis.mass=-1.0'), 'axis.mass = -1.0'),
                 (('--set', 'axis.weight=1.0'), 'axis.weight'),

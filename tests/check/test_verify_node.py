@@ -145,7 +145,7 @@ def without(bag: Path, topic: str, step: int, tmp_path: Path) -> Path:
 def what_if(whole: Path, middle: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for bag, change, code, reported in (
             (whole, 'initial.rest_time=0.5', 0, 'motion '), (whole, 'contact.model=rigid', 0, 'motion '),
-            (middle, 'axis.mass=100.0', 0, 'motion '), (whole, 'time.rate=500.0', 2, 'its orders are counted in steps'),
+            (middle, 'axis.mass=100.0', 0, 'motion '), (whole, 'time.rate=500.0', 2, 'its commands are counted'),
             (middle, 'initial.rest_time=0.5', 2, 'this recording begins in mid-run')):
         capsys.readouterr()
         assert tool(['verify', str(bag), '--set', change]) == code

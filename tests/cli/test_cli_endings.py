@@ -227,7 +227,7 @@ def test_a_path_below_two_folders_that_are_missing_is_refused(
         command: tuple[str, ...], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
     monkeypatch.chdir(tmp_path)
     line = refused(capsys, *command, Path('new', 'er', name))
-    assert f"must be in a folder, or in a new one within one; {tmp_path / 'new'} is none; make it, or look" in line
+    assert f"must be in a folder, or one level below it; {tmp_path / 'new'} does not exist; create it, or check" in line
     assert not list(tmp_path.iterdir())
 
 

@@ -115,7 +115,7 @@ class TestInPython:
 
     def test_no_scene(self, fig8_bag: Path, tmp_path: Path) -> None:
         bare = open_bag(rewritten(fig8_bag, tmp_path / 'bare', attachment=lambda name: None))
-        with pytest.raises(RecordingError, match=r'no scene\.yaml travels in it'):
+        with pytest.raises(RecordingError, match=r'it has no scene\.yaml'):
             _ = bare.scene
 
     def test_frame(self, fig8_bag: Path) -> None:

@@ -104,7 +104,7 @@ class TestRefusals:
     @pytest.mark.parametrize('name', ['run.jpg', 'run', 'run.png.gz'])
     def test_another_ending(self, name: str, tmp_path: Path, capsys: Capture) -> None:
         line = refused(capsys, 'plot', 'paper_fig8', '--duration', '1', '--out', tmp_path / name)
-        assert 'must be a file ending in .png, .pdf or .svg; the ending decides the format' in line
+        assert 'must be a file ending in .png, .pdf or .svg; the ending selects the format' in line
 
     @pytest.mark.parametrize('window', ['1', '2:1', '1:1', 'a:b', '1:2:3', ':', 'nan:1', '1:+0',
                                         'first_command:3', 'first_command:+-1'])
@@ -120,8 +120,8 @@ class TestRefusals:
         assert not list(tmp_path.iterdir())
 
     def test_what_is_for_scenes_only(self, fig8_bag: Path, capsys: Capture) -> None:
-        assert '--duration and --set are for a scene' in refused(capsys, 'plot', fig8_bag, '--duration', '1')
-        assert '--duration S is needed' in refused(capsys, 'plot', 'paper_fig8')
+        assert '--duration and --set apply to scenes' in refused(capsys, 'plot', fig8_bag, '--duration', '1')
+        assert 'A scene needs --duration' in refused(capsys, 'plot', 'paper_fig8')
 
 
 # Several runs, over each other or in columns.
@@ -210,12 +210,12 @@ def test_controllers_in_columns_with_their_figures(sides: Sides, tmp_path: Path,
 
 @pytest.mark.usefixtures('sides')
 @pytest.mark.parametrize(('arguments', 'said'), [
-    (['plot', *NAMES, NAMES[0]], 'RUN_OR_SCENE: give each once'),
+    (['plot', *NAMES, NAMES[0]], 'Give each RUN_OR_SCENE only once'),
     (['plot', *NAMES, '--window', '0:3'], 'must be A:B with 0 <= A < B <= 1 s'),
     (['plot', *NAMES, '--limits', 'none.yaml'], "limits file = 'none.yaml' is refused"),
-    (['compare', *NAMES, '--limits', 'limits.yaml', '--out', 'o'], '--limits and --window are for --controllers'),
+    (['compare', *NAMES, '--limits', 'limits.yaml', '--out', 'o'], '--limits and --window need --controllers'),
     (['compare', '--controllers', 'paper_fig8', '--out', 'o'], 'this is a scene: record it'),
-    (['compare', '--controllers', *NAMES, NAMES[0], '--out', 'o'], 'give each once'),
+    (['compare', '--controllers', *NAMES, NAMES[0], '--out', 'o'], 'only once'),
     (['compare', '--controllers', *NAMES, '--window', '0.5:7', '--out', 'o'], 'must be A:B with 0 <= A < B <= 1 s'),
 ])
 def test_several_refused(arguments: list[str], said: str, capsys: Capture) -> None:

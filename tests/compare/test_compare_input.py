@@ -92,7 +92,7 @@ def test_messages_of_another_version(fig8_bag: Path, tmp_path: Path, capsys: Cap
 
 def test_a_bag_without_its_scene(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
     rewritten(fig8_bag, tmp_path / 'bare', attachment=lambda name: None)
-    assert 'no scene.yaml travels in it' in refused(capsys, tmp_path, tmp_path / 'bare')
+    assert 'it has no scene.yaml' in refused(capsys, tmp_path, tmp_path / 'bare')
 
 
 def test_a_cut_file_is_used_as_far_as_it_goes(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -140,7 +140,7 @@ def test_wrong_use(arguments: list[str], word: str, tmp_path: Path, capsys: Capt
 
 @pytest.mark.parametrize('option', [['--duration', '1'], ['--set', 'axis.mass=1.0']])
 def test_options_for_scenes_alone(option: list[str], fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    assert 'is for scenes' in refused(capsys, tmp_path, fig8_bag, *option)
+    assert 'applies to scenes' in refused(capsys, tmp_path, fig8_bag, *option)
 
 
 def test_the_name_of_a_scene_is_the_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:

@@ -234,7 +234,7 @@ def test_the_tool_writes_the_page_with_a_measured_run_or_says_why_not(tmp_path: 
     assert '--beside = ' in refused(capsys, 'explore', 'paper_fig8', '--beside', csv, '--out', out)
     for change in ('solver.name=fixed_step', 'normal_load.course=constant', 'friction.scale=0.5',
                    'friction.static.backward.initial=0.13'):
-        assert 'must be left out of a page' in refused(capsys, 'explore', 'paper_fig8', '--set', change, '--out', out)
+        assert 'must be omitted in a page' in refused(capsys, 'explore', 'paper_fig8', '--set', change, '--out', out)
 
 
 def test_a_phone_has_all_in_its_width(page: Browser) -> None:

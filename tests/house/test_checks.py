@@ -44,6 +44,24 @@ class TestSeededFaults:
         (tmp_path / 'a.txt').write_text('The course of the wave, of course, easily told; drive.course, break-aways')
         assert output(TOOLS / 'codespell', tmp_path, code=0) == ''
 
+    def test_of_prose(self, tmp_path: Path) -> None:
+        page = tmp_path / 'page.md'
+        page.write_text('# What is here\n\nThere is a slip. The slider is moved by the drive. A very long one: '
+                        f'{"word " * 36}.\n\n* It stands beside the axis.\n\n| what was measured |\n|---|\n\n'
+                        '    what is none in code\n\n`what is code`, [text](what-is.md). '
+                        f'{"Multidimensional identification methodology. " * 12}\n')
+        said = output(TOOLS / 'python', '-m', 'dev.prose', page, code=1)
+        assert [line.partition('page.md:')[2].partition(': ')[0::2] for line in said.splitlines()] == [
+            ('1', "'What is': name it with a noun"),
+            ('1', 'reading ease -42, at least 50: shorter words and sentences'),
+            ('3', '"A very long one: word word word word word word wor...": 40 words, at most 35'),
+            ('3', '"The slider is moved by ...": passive: let the subject act'),
+            ('3', '"There is ...": begin with the subject, or with "you"'),
+            ('3', "weasel_words.very: Substitute 'damn' every time you're inclined to write 'very'; your editor will"
+                  ' delete it and the writing will be just as it should be.'),
+            ('5', "'beside': write next to, with, as well as or compared with"),
+            ('7', "'what was': name it with a noun")]
+
     def test_of_links_within_the_docs(self, tmp_path: Path) -> None:
         (tmp_path / 'docs').mkdir()
         (tmp_path / 'docs/index.md').write_text('# A\n\n[a](nowhere.md) [b](#nowhere) [c](index.md#a) [d](#a)\n')

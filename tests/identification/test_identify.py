@@ -131,7 +131,7 @@ def test_a_model_that_does_not_fit_is_rejected(tmp_path: Path) -> None:
     assert all('single slips' in estimate.derivation for estimate in found.estimates)
     assert all(misfit.statistic > misfit.limit for misfit in found.misfits)
     assert all(0.0 <= misfit.from_time < misfit.to_time <= 2.0 for misfit in found.misfits)
-    assert all('off by' in misfit.statement or 'go together' in misfit.statement for misfit in found.misfits)
+    assert all('off by' in misfit.statement or 'autocorrelated' in misfit.statement for misfit in found.misfits)
 
 
 KATO = changed(RIGID, {'friction.static.law': 'kato', 'friction.static.limit': 0.24,
@@ -208,7 +208,7 @@ def test_what_is_refused(rigid: stickslip.Run, tmp_path: Path) -> None:
          lambda: identify(RIGID, {'friction.kinetic.velocities[0]': between(0.0, 1.0)})),
         ("free parameter = 'sensor.speed.scale' is refused",
          lambda: identify(RIGID, {'sensor.speed.scale': between(0.5, 2.0)})),
-        ('look at its unit, or free sensor.drive_force.scale', lambda: stickslip.identify(
+        ('check its unit, or free sensor.drive_force.scale', lambda: stickslip.identify(
             measure(tmp_path / 'kn', RIGID, 2.0, change={'drive_force': 1e-3}), RIGID, mass)),
         ('resolution = .velocity. is refused', lambda: identify(RIGID, mass, resolutions={'velocity': 1e-3})),
     ]

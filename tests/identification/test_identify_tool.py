@@ -119,7 +119,7 @@ WRONG: Mapping[str, tuple[Callable[[], Readings], Mapping[str, tuple[float, floa
     'no motion': (without_motion, FREE, ('a position that changes by', 'the slider moves')),
     'no stick': (without_stick, FREE, ('friction.static.initial', 'there is no rest between two motions')),
     'another clock': (with_another_clock, FREE, ('a jump of its time from 2 to',)),
-    'another unit': (in_millimetres, FREE, ('look at the unit of the position',)),
+    'another unit': (in_millimetres, FREE, ('check the unit of the position',)),
     'too few readings': (few, FREE, ('samples',)),
     'fixed by the law': (readings, {'friction.static.time_constant': (0.1, 1.0)},
                          ('friction.static.time_constant', 'one that the laws of the scene have')),

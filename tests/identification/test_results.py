@@ -277,8 +277,8 @@ def test_the_folder_has_four_files_that_say_the_same(run: MeasuredRun, found: Id
     assert len(values['friction']['kinetic']['speed']) == len(values['friction']['kinetic']['half_width'])
     assert page.count('data:image/svg+xml;base64,') == 4
     assert 'src="http' not in page
-    for words in ('The model fits', 'axis.drive_stiffness', '160 kN/m', 'What is left of each channel',
-                  'Slips: measured beside fitted', 'From position and drive force of measured'):
+    for words in ('The model fits', 'axis.drive_stiffness', '160 kN/m', 'Residuals of each channel',
+                  'Slips, measured and fitted', 'From position and drive force of measured'):
         assert words in page, words
 
 

@@ -55,7 +55,7 @@ def test_springs_and_feeds_of_two_runs_share_their_friction(tmp_path: Path) -> N
 
     with pytest.raises(InputError, match=r"each = 'axis.mass' is refused: must be a free parameter"):
         stickslip.identify([one, two], begin(), FREE, each=['axis.mass'])
-    with pytest.raises(InputError, match='left out with one run'):
+    with pytest.raises(InputError, match='omitted with one run'):
         stickslip.identify(one, begin(), FREE, each=[STIFFNESS])
     with pytest.raises(InputError, match='another run than one: its readings are the same'):
         stickslip.identify([one, one], begin(), FREE)

@@ -91,7 +91,7 @@ def test_verbs_take_it_as_far_as_what_they_need_was_measured(run: MeasuredRun, t
     limits = tmp_path / 'limits.yaml'
     limits.write_text('limits: {following_error: {max: 1.0}, sticks: {max: 99}, peak_speed: {max: 1.0}}\n')
     assert answered(capsys, 'check', folder, '--limits', limits)[0] == 0
-    assert 'it was measured; only what was simulated can be verified' in refused(capsys, 'verify', folder)
+    assert 'a measurement; only simulated runs can be verified' in refused(capsys, 'verify', folder)
 
 
 def test_a_velocity_alone(data: Path, tmp_path: Path, capsys: Capture) -> None:

@@ -82,8 +82,8 @@ def test_units_give_the_decimal_number_that_was_meant() -> None:
     (NAMED, 't,v\n# 1,2\n', 'it has no numbers'),
     (NAMED, 't,v\n12.3,1\n12.4,1\n', r'line 2 = 12\.3 is refused: .*set drive\.file_begin .* like 12\.3'),
     (f'{NAMED}, file_begin: 3.0', 't,v\n0,1\n1,2\n', r'drive\.file_begin = 3\.0 is refused: must be within'),
-    (f'{NAMED}, course: sine', 't,v\n0,1\n', r'drive\.file = .* is refused: must be left out with drive\.course: sine'),
-    (f'{NAMED}, times: [0.0]', 't,v\n0,1\n', r'drive\.file = .* is refused: must be left out with drive\.times'),
+    (f'{NAMED}, course: sine', 't,v\n0,1\n', r'drive\.file = .* is refused: must be omitted with drive\.course: sine'),
+    (f'{NAMED}, times: [0.0]', 't,v\n0,1\n', r'drive\.file = .* is refused: must be omitted with drive\.times'),
     (f'{NAMED}, file_resample: 1.0e-6', 't,v\n0,1\n9,2\n', 'at most 200000 points; this would be 9000001'),
     ('course: table, file_unit: mm/s', '', r'drive\.file_unit = .* is refused: must be in a scene file with'),
     ('file: fed.csv', '', r'No such file or directory; did you mean .*feed\.csv\?'),
@@ -128,7 +128,7 @@ def test_a_column_of_positions_is_the_path_of_the_drive(tmp_path: Path) -> None:
     assert begun.values['drive.positions'] == (pytest.approx(0.01205), 0.0121, 0.0121)
     with pytest.raises(InputError, match=r'drive\.positions\[0\] = 0\.012 is refused: .* set initial\.position: 0\.01'):
         scene_of(tmp_path, drive, rows)
-    with pytest.raises(InputError, match=r'drive\.file = .* is refused: must be left out with drive\.slopes'):
+    with pytest.raises(InputError, match=r'drive\.file = .* is refused: must be omitted with drive\.slopes'):
         scene_of(tmp_path, f'{drive}, slopes: [0.0]', rows)
 
 

@@ -26,7 +26,7 @@ from tests.support.recorded_runs import FACTS, events, samples
 from tests.support.rewritten_bags import rewritten
 from tests.support.tool import Capture, refused
 
-REPORTED = 'damaged: it was finished, but is no longer what was written; fetch the file again'
+REPORTED = 'damaged: it was closed properly, but has changed since; fetch it again'
 
 
 def data_of(bag: Path) -> bytes:

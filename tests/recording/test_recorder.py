@@ -16,11 +16,11 @@ from tests.support.waiting import wait_for
 
 class TestRefusals:
     @pytest.mark.parametrize(('made', 'asked', 'reported'), [
-        ('here/', 'here', '/here exists and is never overwritten; choose another name'),
-        ('here/metadata.yaml', 'here', '/here exists and is never overwritten; choose another name'),
+        ('here/', 'here', '/here exists and is not overwritten; choose another name'),
+        ('here/metadata.yaml', 'here', '/here exists and is not overwritten; choose another name'),
         ('here', 'here', 'here.*; choose a'), ('here', 'here/below', 'here.*; choose a'),
         ('here', 'here/far/below', 'here.*; choose a'),
-        ('here', '/proc/run', '^/proc/run cannot be made: .*; choose a place that can be written$'),
+        ('here', '/proc/run', '^/proc/run cannot be created: .*; choose a writable place$'),
     ])
     def test_to_write(self, tmp_path: Path, made: str, asked: str, reported: str) -> None:
         mine = tmp_path / made

@@ -198,7 +198,7 @@ class TestHealth:
             process.send(signal.SIGSTOP)
             code, errors = ended_at_once('health', 'patience:=1.5')
         assert code == 1
-        assert errors.startswith('health: /feed_axis said nothing on /diagnostics within 1.5 s')
+        assert errors.startswith('health: /feed_axis published nothing on /diagnostics within 1.5 s')
 
     def test_one_whose_recording_failed_is_not_well(self, tmp_path: Path) -> None:
         with running(*recording_into(tmp_path / 'run'), prepare=with_small_files):

@@ -269,7 +269,7 @@ def test_a_run_that_contradicts_itself_stands_still(tmp_path: Path) -> None:
             assert node.wait(DEADLINE) == 0
         finally:
             node.kill()
-    assert 'the run contradicts its own motion or balance of energy at t = ' in line
+    assert 'the run violates its own motion or energy balance at t = ' in line
     bag = open_bag(tmp_path / 'run')
     assert bag.is_complete
     assert len(list(bag.messages(['/slider_state']))) > 5

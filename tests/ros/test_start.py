@@ -78,7 +78,7 @@ class TestRefusedStart:
         (['--nonsense'], ['--nonsense']), (['--params-file', 'nowhere.yaml'], ['nowhere.yaml', 'No such file']),
         (['record.enabled:=true', 'axis.mass:=-1.0'], ['axis.mass = -1.0']),
         (['solver.name:=adaptive'], ['solver.name', 'exact or fixed_step in the node']),
-        (['drive.velocity:=5.0'], ['drive.velocity = 5.0 is refused', "if 5 m/s is meant, add -p 'meant:=["]),
+        (['drive.velocity:=5.0'], ['drive.velocity = 5.0 is refused', "if 5 m/s is intended, add -p 'meant:=["]),
         (['meant:=drive.velocity'], ["meant = 'drive.velocity'", 'a list']),
     ])
     def test_by_words(self, words: list[str], reported: list[str]) -> None:

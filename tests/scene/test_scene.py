@@ -267,7 +267,7 @@ def test_a_scene_with_it_comes_back_from_its_text() -> None:
      'normal_load', 'solver.name: exact'),
     ({**STEPS, 'normal_load.forces': [0.0, 1.0, -3433.0]}, 'axis.normal_force + normal_load', '>= 0 N at all times'),
     ({**SINE, 'normal_load.amplitude': 3433.0, 'solver.name': 'adaptive'}, 'axis.normal_force + normal_load',
-     'whole amplitudes'),
+     'full amplitude'),
     ({'normal_load.course': 'ramp', 'normal_load.rate': -1.0, 'solver.name': 'adaptive'},
      'axis.normal_force + normal_load', '-inf'),
     ({**STEPS, 'normal_load.forces': [0.0, 1e6, 0.0], 'friction.kinetic.end_slope': 10.0, 'solver.name': 'fixed_step'},
@@ -296,7 +296,7 @@ def test_studies_of_constant_inputs_refuse_it() -> None:
     assert not works_in_batches(scene)
     with pytest.raises(InputError, match='without faults or a normal load'):
         critical_of(scene, default_range(scene, 'drive.velocity'), 1e-3)
-    with pytest.raises(InputError, match=r'normal_load\.course = .steps. is refused: must be left out for advice'):
+    with pytest.raises(InputError, match=r'normal_load\.course = .steps. is refused: must be omitted for advise'):
         advise(scene, 1e-3, 1.0, 1)
 
 

@@ -78,7 +78,7 @@ def test_yaml_that_ros_refuses_or_passes_over(text: str, hint: str) -> None:
     ('    solver: {name: fixed_step, step: 0.5}\n', 'solver.step', 'exact, which has none'),
     ('    solver: {name: adaptive, rtol: 1.0e-15}\n', 'solver.rtol', '>= 2.3e-14'),
     ('    solver: {name: adaptive, step: 0.001}\n', 'solver.step', 'solver.name: fixed_step'),
-    ('    solver: {method: rk4}\n', 'solver.method', 'left out with solver.name: exact'),
+    ('    solver: {method: rk4}\n', 'solver.method', 'omitted with solver.name: exact'),
     ('    time: {mode: lock_step}\n', 'time.mode', 'realtime, lockstep, free_run'),
     ('    time: {factor: .inf}\n', 'time.factor', 'free_run'),
     ('    time: {mode: lockstep, rate: 100.0}\n    clock: {rate: 101.0}\n', 'clock.rate', 'time.rate'),

@@ -188,14 +188,15 @@ def test_only_numbers_of_a_scene_are_asked_about_in_their_unit() -> None:
     ({'friction.kinetic.coefficients': (192.0, 84.0)}, 'friction.kinetic.coefficients', '192'),
 ])
 def test_a_question_names_value_unit_and_answer(changes: dict[str, object], name: str, read: str) -> None:
-    with pytest.raises(InputError, match=rf'{name} = .* it was read as {read}, .* if {read} is meant, '
-                                         rf'add --meant {name}$'):
+    with pytest.raises(InputError, match=rf'{name} = .* it was read as {read}, .* if {read} is intended, '
+                                         rf'add --allow-implausible {name}$'):
         check_plausible(changes, ())
     check_plausible(changes, (name,))
 
 
 def test_a_name_that_is_never_asked_about_is_refused() -> None:
-    with pytest.raises(InputError, match=r'--meant = .drive.velocit. is refused: .* did you mean drive.velocity\?'):
+    with pytest.raises(InputError,
+                       match=r'--allow-implausible = .drive.velocit. is refused: .* did you mean drive.velocity\?'):
         check_plausible({}, ('drive.velocit',))
 
 
@@ -212,7 +213,7 @@ def test_a_name_that_is_never_asked_about_is_refused() -> None:
 def test_every_verb_asks(verb: tuple[str, ...], tmp_path: Path, capsys: Capture,
                          monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert 'is meant, add --meant ' in refused(capsys, *verb)
+    assert 'is intended, add --allow-implausible ' in refused(capsys, *verb)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -224,4 +225,4 @@ def test_a_file_is_named_and_what_is_meant_runs(tmp_path: Path, capsys: Capture)
 
 
 def test_what_if_asks_about_what_it_changes(fig8_bag: Path, capsys: Capture) -> None:
-    assert 'add --meant drive.velocity' in refused(capsys, 'verify', fig8_bag, *FAST)
+    assert 'add --allow-implausible drive.velocity' in refused(capsys, 'verify', fig8_bag, *FAST)

@@ -394,7 +394,7 @@ def test_the_tool_writes_a_scene_that_runs_and_one_page(capsys: Capture, tmp_pat
 
 @pytest.mark.parametrize(('options', 'words'), [
     (['--for', 'friction.static.limt'], 'did you mean friction.static.limit?'),
-    (['--for', 'drive.velocity'], 'its feed is what is proposed'),
+    (['--for', 'drive.velocity'], 'the feed is the proposal'),
     (['--for', 'initial.stretch'], 'other than 0'),
     (['--for', 'axis.mass,axis.mass'], 'each once'),
     (['--for', ''], "parameter = '' is refused"),
@@ -403,7 +403,7 @@ def test_the_tool_writes_a_scene_that_runs_and_one_page(capsys: Capture, tmp_pat
     (['--duration', '-1'], '--duration = -1.0 is refused'),
     (['--duration', 'nan'], '--duration = nan is refused'),
     (['--rate', '1e-3'], 'readings in'),
-    (['--resolution', '0'], 'no reading is exact'),
+    (['--resolution', '0'], 'readings are never exact'),
     (['--noise', '-1e-6'], '--noise = -1e-06 is refused'),
     (['--force-noise', '0'], '--force-noise = 0.0 is refused'),
     (['--known', '0'], '--known = 0.0 is refused'),

@@ -119,11 +119,11 @@ def test_the_tool_prints_draws_and_writes_it(tmp_path: Path, capsys: Capture) ->
 
 
 @pytest.mark.parametrize(('options', 'said'), [
-    (('--between', '0.01:0.1'), '--between is where to look'),
-    (('--of', 'drive.velocity', '--resume'), 'no --resume'),
-    (('--of', 'drive.velocity', '--duration', '10'), 'no --duration'),
+    (('--between', '0.01:0.1'), '--between needs --of'),
+    (('--of', 'drive.velocity', '--resume'), '--of does not take --duration or --resume'),
+    (('--of', 'drive.velocity', '--duration', '10'), '--of does not take --duration or --resume'),
     (('--of', 'axis.normal_force'), '--of = .axis.normal_force. is refused: must be another parameter'),
-    (('--of', 'drive.velocity', '--between', '1:100'), 'add --meant drive.velocity'),
+    (('--of', 'drive.velocity', '--between', '1:100'), 'add --allow-implausible drive.velocity'),
     (('--of', 'drive.speed'), 'did you mean'),
 ])
 def test_wrong_use_is_refused(options: tuple[str, ...], said: str, tmp_path: Path, capsys: Capture) -> None:

@@ -36,7 +36,7 @@ def test_a_distribution_in_the_wrong_unit_is_asked_back(tmp_path: Path, capsys: 
     given = ('uncertainty', 'paper_fig7', '--with', known, '--samples', '16', '--out', tmp_path / 'out')
     said = refused(capsys, *given)
     assert f'{known}: drive.velocity = 5.0 is refused: must be plausible for a feed axis' in said
-    assert 'add --meant drive.velocity' in said
+    assert 'add --allow-implausible drive.velocity' in said
     code, out, _ = answered(capsys, *given, '--meant', 'drive.velocity')
     assert (code, '16 samples of 1 parameter, ' in out) == (0, True)
 

@@ -141,7 +141,7 @@ class Advice(NamedTuple):
 def check_tolerance(tolerance: float) -> None:
     """Raise InputError unless a relative error can be that."""
     if not 0.0 < tolerance < 1.0:
-        raise InputError('--tolerance', tolerance, '> 0 and < 1', 'give the relative error that is allowed, as 1e-3')
+        raise InputError('--tolerance', tolerance, '> 0 and < 1', 'give the allowed relative error, such as 1e-3')
 
 
 def advise(scene: Scene, tolerance: float, duration: float, rounds: int, progress: Progress = None) -> Advice:
@@ -152,10 +152,10 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int, progres
     """
     check_tolerance(tolerance)
     if scene.rig.faults:
-        raise InputError('faults.ids', [fault.id for fault in scene.rig.faults], 'left out for advice',
+        raise InputError('faults.ids', [fault.id for fault in scene.rig.faults], 'omitted for advise',
                          'the effect of faults belongs to no part of the model')
     if scene.normal_load is not None:
-        raise InputError('normal_load.course', scene.values['normal_load.course'], 'left out for advice',
+        raise InputError('normal_load.course', scene.values['normal_load.course'], 'omitted for advise',
                          'the solvers are compared under a normal force that does not vary')
     reference = reference_of(scene, duration)
     parts, absent, settings = parts_of(reference.scene), absent_parts(reference.scene), solver_settings(scene)

@@ -208,7 +208,7 @@ def check_duration(duration: float) -> None:
     """Raise InputError unless all solvers can be run for `duration` s in a bearable time."""
     if not 0.0 < duration <= _MAX_DURATION:
         raise InputError('duration', duration, f'> 0 and <= {_MAX_DURATION:g} s',
-                         'every solver runs it, also those of the shortest steps: advise on a part of it')
+                         'every solver runs it, including those with the shortest steps: use a part of it')
 
 
 def default_duration(scene: Scene) -> float:

@@ -362,12 +362,12 @@ class _File:
 
 def _make(folder: Path) -> None:
     if os.path.lexists(folder):
-        raise RecordingError(f'{folder} exists and is never overwritten; choose another name or remove it')
+        raise RecordingError(f'{folder} exists and is not overwritten; choose another name or remove it')
     try:
         folder.parent.mkdir(parents=True, exist_ok=True)
         folder.mkdir()
     except OSError as error:
-        raise RecordingError(f'{folder} cannot be made: {error.strerror}; choose a place that can be written') from None
+        raise RecordingError(f'{folder} cannot be created: {error.strerror}; choose a writable place') from None
 
 
 def _remove(folder: Path) -> None:

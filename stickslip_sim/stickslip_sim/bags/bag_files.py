@@ -56,7 +56,7 @@ def _parts(path: Path, files: list[Path]) -> list[Path]:
     for number in range(first, last):
         if number not in numbered:
             name = numbered[first].name.rpartition('_')[0]
-            raise RecordingError(f'{path}: {name}_{number}.mcap is missing; give a part of the bag by itself')
+            raise RecordingError(f'{path}: {name}_{number}.mcap is missing; give a single part of the bag')
     parts = [numbered[number] for number in range(first, last + 1)]
     return parts[:-1] if goes_on_empty(parts[-2]) else parts
 
@@ -189,7 +189,7 @@ class RecordedFile:
                 messages = messages_at(self.path, file, chunk.offset)
         except (*CUT_OFF, OSError) as error:
             reason = str(error) or type(error).__name__   # some errors of mcap have no words
-            raise RecordingError(f'{self.path}: damaged behind {(chunk.begin - self.begin) * 1e-9:g} s: {reason}'
+            raise RecordingError(f'{self.path}: damaged after {(chunk.begin - self.begin) * 1e-9:g} s: {reason}'
                                  ) from None
         return self._named(messages, messages.on(numbers))
 
@@ -267,7 +267,7 @@ class RecordedFile:
     def _count(self, messages: Messages) -> None:
         for channel, number in enumerate(np.bincount(messages.channels).tolist()):
             if number and channel not in self.channels and self._is_checked:
-                raise RecordingError(f'{self.path}: damaged: a message on channel {channel}, which is nowhere')
+                raise RecordingError(f'{self.path}: damaged: a message on channel {channel}, which is not defined')
             if number:
                 self.counts[channel] += number
         if len(times := messages.log_times):
@@ -283,7 +283,7 @@ class RecordedFile:
                     self._take(record)
                     yield record
         except (*CUT_OFF, OSError):
-            raise RecordingError(f'{self.path}: damaged: what it lists is not there; fetch the file again') from None
+            raise RecordingError(f'{self.path}: damaged: its index points to missing data; fetch it again') from None
 
     def _qos_of(self, channel: records.Channel) -> QosProfile:
         """Return what was offered, in the words of any version of rosbag2."""

@@ -53,10 +53,10 @@ def contents(path: Path) -> Iterator[McapRecord | Messages]:
                 yield from gathered.rest()
             except CUT_OFF:
                 if begin:
-                    raise RecordingError(f'{path} is not an MCAP file: it is empty, or begins as none does') from None
+                    raise RecordingError(f'{path} is not an MCAP file: it is empty or has another format') from None
                 if _is_finished(file):
-                    raise RecordingError(f'{path}: damaged: it was finished, but is no longer what was written; fetch '
-                                         'the file again') from None
+                    raise RecordingError(f'{path}: damaged: it was closed properly, but has changed since; fetch it '
+                                         'again') from None
                 with suppress(*CUT_OFF):
                     yield from gathered.rest()
     except OSError as error:
@@ -187,7 +187,7 @@ def _content(path: Path, record: Chunk) -> bytes:
                              'read: convert it first (mcap compress)')
     if record.uncompressed_size > RECORD_LIMIT:
         raise RecordingError(f'{path}: a chunk of {record.uncompressed_size} bytes; at most {RECORD_LIMIT} are read: '
-                             'write it anew with smaller chunks (mcap compress --chunk-size)')
+                             'rewrite it with smaller chunks (mcap compress --chunk-size)')
     data = _decompressed(record)
     if len(data) != record.uncompressed_size:
         raise McapError('a chunk of another size than it says')

@@ -94,7 +94,7 @@ def _add(store: Typestore, definitions: Mapping[str, str]) -> None:
     types: dict[str, Any] = {}
     for name, text in definitions.items():
         if len(text) > LONGEST_DEFINITION:
-            raise RecordingError(f'{name} is defined in {len(text)} letters; at most {LONGEST_DEFINITION} are read')
+            raise RecordingError(f'{name}: {len(text)} characters; at most {LONGEST_DEFINITION} are read')
         with understood(f'the definition of {name}'):
             types.update(get_types_from_msg(text, name))
     _check_arrays(types)

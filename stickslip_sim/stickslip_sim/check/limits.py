@@ -196,7 +196,7 @@ class Limits:
         for limit in self.limits:
             if isinstance(limit.kind, CircleKind) != are_two:
                 raise InputError(limit.name, limit.kind.name, 'one of ' + ', '.join(CIRCLE_KINDS) if are_two else
-                                 'left out in a check of one axis', 'check each axis by itself with other limits'
+                                 'omitted in a check of one axis', 'check each axis by itself with other limits'
                                  if are_two else 'check two axes: --circle RUN_X RUN_Y')
 
     def reference_for(self, run: Run) -> Reference | None:
@@ -234,7 +234,7 @@ def limits_of(document: object, folder: Path = Path()) -> Limits:
 def check_fit(limits: Limits, begin: float, end: float, has_timing: bool, commands: KnownCommands | None) -> None:
     """Raise InputError when a limit is set for what a run from `begin` to `end` (s) does not have."""
     if limits.timing and not has_timing:
-        raise InputError(TIMING_LIMIT, _VALID, 'left out here: only a run that the node recorded in real time has a '
+        raise InputError(TIMING_LIMIT, _VALID, 'omitted here: only a run that the node recorded in real time has a '
                          'verdict', 'drop this limit')
     for limit in limits.limits:
         name = f'{limit.name}.window'
@@ -329,7 +329,7 @@ def _reference_of_file(given: Mapping[str, object], folder: Path) -> Reference:
     if len(late):
         row = int(late[0]) + 1
         table.refuse(row, float(times[row]), f'a time after the one before it, {float(times[row - 1])!r} s',
-                     'sort the rows by time, and leave out what is there twice')
+                     'sort the rows by time and drop duplicates')
     return Reference(tuple(times.tolist()), tuple(positions.tolist()))
 
 

@@ -196,11 +196,11 @@ def _recorded_motion(run: RecordedRun) -> ObservedMotion:
     states = StatesSeen([name for name in _SEEN if name not in unknown])
     events = _taken(run, states)
     if not states.count:
-        raise RecordingError(f'{run.bag.path}: no state of the axis in it; nothing can be checked')
+        raise RecordingError(f'{run.bag.path}: no state of the axis; nothing can be checked')
     if not states.are_finite:
-        raise RecordingError(f'{run.bag.path}: states that are no finite numbers; nothing can be checked')
+        raise RecordingError(f'{run.bag.path}: states with non-finite numbers; nothing can be checked')
     if not states.rise:
-        raise RecordingError(f'{run.bag.path}: time goes back in it; give a recording of one run')
+        raise RecordingError(f'{run.bag.path}: its time goes backwards; give a recording of one run')
     begin, end = states.begin, states.end
     seen = _seen([event for event in events if begin <= event.time <= end])
     return ObservedMotion(begin, end, Mode(states.mode), seen, states.count, states.missing_steps)

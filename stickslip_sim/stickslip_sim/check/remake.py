@@ -44,7 +44,7 @@ def doubts_about(run: RecordedRun) -> tuple[str, ...]:
     """Return what is doubtful about a run, for people; raises RecordingError when it cannot be run again."""
     bag = run.bag
     if isinstance(run, MeasuredRun):
-        raise RecordingError(f'{bag.path}: it was measured; only what was simulated can be verified')
+        raise RecordingError(f'{bag.path}: a measurement; only simulated runs can be verified')
     if not bag.is_complete and not bag.topics:
         raise RecordingError(f'{bag.path}: cut off before its first message was written')
     facts = _facts_of(run)
@@ -92,8 +92,7 @@ def made_with(run: RecordedRun) -> str:
 
 def _facts_of(run: RecordedRun) -> Mapping[str, str]:
     if METADATA not in run.bag.metadata:
-        raise RecordingError(f'{run.bag.path}: it does not say what it was simulated with; give a run that stickslip '
-                             'recorded')
+        raise RecordingError(f'{run.bag.path}: its scene and solver are missing; give a run that stickslip recorded')
     return run.bag.metadata[METADATA]
 
 
@@ -154,7 +153,7 @@ class Orders:
             raise self._refused(self._rig.step + 1, error) from None
 
     def _refused(self, step: int, error: InputError) -> RecordingError:
-        return RecordingError(f'{self._bag.path}: the order before step {step} is refused: {error}')
+        return RecordingError(f'{self._bag.path}: the command before step {step} is refused: {error}')
 
     def _command_velocity(self, message: Any) -> None:
         self._velocity = message.velocity
@@ -346,10 +345,10 @@ def other_scene(run: RecordedRun, changes: Mapping[str, object]) -> Scene:
     for name, value in changes.items():
         entry = BY_NAME.get(name)
         if is_of_node and name.startswith('time.'):
-            raise InputError(name, value, 'as in the recording', 'its orders are counted in steps')
+            raise InputError(name, value, 'as in the recording', 'its commands are counted in steps')
         if is_in_mid_run and entry is not None and not entry.live:
             raise InputError(name, value, 'a parameter that can change while the axis runs',
-                             'this recording begins in mid-run; take one from the start')
+                             'this recording begins in mid-run; use one from the start')
     return changed(run.scene, changes)
 
 

@@ -136,14 +136,14 @@ class _Topic:
             raise RecordingError(f'{self._path}: {self.name}: its field {error.name} is unknown here; recorded by '
                                  'another version?') from None
         except struct.error:
-            raise RecordingError(f'{self._path}: {self.name}: published at {message.publish_time} ns, which no stamp '
-                                 'can say') from None
+            raise RecordingError(f'{self._path}: {self.name}: published at {message.publish_time} ns, not a valid '
+                                 'stamp') from None
         return None if made == message.data else self._field(message.data, made, number, output.time)
 
     def _field(self, recorded: bytes, made: bytes, number: int, time: float) -> Difference:
         theirs, ours = self._layout.numbers(recorded), self._layout.numbers(made)
         if theirs is None or ours is None:
-            raise RecordingError(f'{self._path}: {self.name}: {len(recorded)} bytes that are no message of its type')
+            raise RecordingError(f'{self._path}: {self.name}: {len(recorded)} bytes that are not a message of its type')
         for name, a, b in zip(self._layout.names, theirs, ours):
             if repr(a) != repr(b):     # separates 0.0 from −0.0, and takes NaN for itself
                 return Difference(number, time, self.name, name, a, b)
@@ -179,7 +179,7 @@ def verify(run: RecordedRun, progress: Progress = None) -> Verdict:
         if look.difference:
             break
     if not (look.steps or look.difference):
-        raise RecordingError(f'{run.bag.path}: no step with its state in it; nothing can be verified')
+        raise RecordingError(f'{run.bag.path}: no step with its state; nothing can be verified')
     return Verdict(look.steps, look.events, look.missing, look.end, look.difference)
 
 

@@ -12,16 +12,20 @@ _ROUNDS = 5
 
 @verb(short_help='Show which parts and which solver a tolerance needs.')
 @scene_argument
-@click.option('--tolerance', type=float, required=True, metavar='T', help='Relative error that is allowed, as 1e-3.')
-@click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: 10 s, or more for 20 cycles].')
-@click.option('--out', type=FILE, metavar='FILE.json', help='Write everything that was measured.')
-@click.option('--scene-out', type=SCENE_FILE, metavar='FILE.yaml', help='Write the least scene.')
+@click.option('--tolerance', type=float, required=True, metavar='T', help='Allowed relative error, such as 1e-3.')
+@click.option('--duration', type=float, metavar='SECONDS',
+              help='Simulated time [default: 10 s, or more for 20 cycles].')
+@click.option('--out', type=FILE, metavar='FILE.json', help='Write all measurements.')
+@click.option('--scene-out', type=SCENE_FILE, metavar='FILE.yaml', help='Write the smallest sufficient scene.')
 @click.option('--rounds', type=click.IntRange(1, 1000), default=_ROUNDS, metavar='N',
-              help=f'Samples of each cost [default: {_ROUNDS}].')
+              help=f'Timing samples per case [default: {_ROUNDS}].')
 @scene_changes('Change a parameter of the scene.')
 def advise(scene: str, tolerance: float, duration: float | None, changes: SceneChanges, out: str | None,
            scene_out: str | None, rounds: int) -> None:
-    """Run SCENE without each of its parts and with each solver; print what changes, and the least that T asks for."""
+    """Find the smallest model and solver that keep SCENE within a tolerance.
+
+    Each part of the scene is left out in turn, and each solver tried; the report lists what changes.
+    """
     from ..advise import advice
     from ..advise.report import advice_as_values, advice_report, least_scene_lines, verdict_report
     from ..advise.trial_runs import changes_between, check_duration, default_duration

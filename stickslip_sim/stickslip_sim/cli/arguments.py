@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What verbs have in common: the arguments RUN and RUN_OR_SCENE, the options --set and --meant."""
+"""What verbs have in common: the arguments RUN and RUN_OR_SCENE, the options --set and --allow-implausible."""
 
 import functools
 import os
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from ..core.errors import ALLOW
 from . import completion
 from .files import Verb, progress_bar
 
@@ -68,9 +69,9 @@ def check_sources(sources: Sequence[str], duration: float | None, changes: 'Scen
         check_each_once(sources)
     recorded = [is_recorded(source) for source in sources]
     if all(recorded) and (duration is not None or changes.overrides):
-        raise click.UsageError('--duration and --set are for a scene; a run stays as it was recorded.')
+        raise click.UsageError('--duration and --set apply to scenes, not to recorded runs.')
     if not all(recorded) and duration is None:
-        raise click.UsageError('--duration S is needed to simulate a scene.')
+        raise click.UsageError('A scene needs --duration SECONDS.')
 
 
 def run_of(source: str, duration: float | None, changes: 'SceneChanges', limits: 'Limits | None' = None) -> 'Run':
@@ -120,14 +121,14 @@ def _is_not_there(name: str, source: str, allowed: str, known: list[str], ending
     return InputError(name, source, allowed, f'{what}; {meant}' if meant else f'{what}: check the name')
 
 
-# The options --set and --meant of every verb that loads a scene, and the scene with them.
+# The options --set and --allow-implausible of every verb that loads a scene, and the scene with them.
 
 ClickCommand = Callable[..., Any]
 Members = AbstractContextManager['Workers | None']    # that run a study
 
 
 class SceneChanges(NamedTuple):
-    """The values of --set, and the names of --meant."""
+    """The values of --set, and the names of --allow-implausible."""
 
     overrides: tuple[str, ...]
     meant: tuple[str, ...]
@@ -163,6 +164,19 @@ class SceneChanges(NamedTuple):
             check_plausible({one.name.partition('[')[0]: (one.low, one.high)}, self.meant)
 
 
+class _Renamed(click.Option):
+    """An option whose old name works, but is not in the help."""
+
+    def get_help_record(self, ctx: click.Context) -> tuple[str, str] | None:
+        record = super().get_help_record(ctx)
+        return record and (record[0].replace(f', {self.opts[1]}', ''), record[1])
+
+
+def allow_implausible(help_of_it: str, **others: Any) -> Callable[[ClickCommand], ClickCommand]:
+    """Return the option --allow-implausible, by its old name `--meant` an argument `meant`."""
+    return click.option(ALLOW, '--meant', 'meant', cls=_Renamed, multiple=True, help=help_of_it, **others)
+
+
 def scene_changes(help_of_set: str) -> Callable[[ClickCommand], ClickCommand]:
     """Give a command the two options; it takes them as one argument `changes`."""
     def decorated(command: ClickCommand) -> ClickCommand:
@@ -170,11 +184,11 @@ def scene_changes(help_of_set: str) -> Callable[[ClickCommand], ClickCommand]:
         def with_changes(*, changes: tuple[str, ...], meant: tuple[str, ...], **arguments: Any) -> Any:
             return command(changes=SceneChanges(changes, meant), **arguments)
 
-        asked = click.option('--meant', multiple=True, metavar='A.B', shell_complete=completion.complete_parameters,
-                             help='Its value is meant, however unusual.')
+        allowed = allow_implausible('Accept an implausible value of this parameter.', metavar='A.B',
+                                    shell_complete=completion.complete_parameters)
         return click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help=help_of_set,
                             shell_complete=completion.complete_parameters)(
-            asked(with_changes))
+            allowed(with_changes))
     return decorated
 
 
@@ -184,13 +198,13 @@ scene_argument = click.argument('scene', metavar='SCENE', shell_complete=complet
 run_argument = click.argument('run', metavar='RUN', shell_complete=completion.complete_folders)
 sources_argument = click.argument('sources', nargs=-1, required=True, metavar='RUN_OR_SCENE...',
                                   shell_complete=completion.complete_scenes)
-scene_duration = click.option('--duration', type=float, metavar='S', help='Time to simulate a scene, s.')
+scene_duration = click.option('--duration', type=float, metavar='SECONDS', help='Simulated time of a scene.')
 
 
 def check_each_once(sources: Sequence[str]) -> None:
     """Raise UsageError where one is given again."""
     if len(set(sources)) < len(sources):
-        raise click.UsageError('RUN_OR_SCENE: give each once.')
+        raise click.UsageError('Give each RUN_OR_SCENE only once.')
 
 
 def command_line(*words: str, **options: Iterable[object]) -> str:
@@ -207,9 +221,9 @@ def controller_options(help_of_gain: str) -> Callable[[ClickCommand], ClickComma
     options = (
         click.argument('controller', metavar='FILE.py:NAME'),
         click.option('--scene', required=True, metavar='SCENE', shell_complete=completion.complete_scenes,
-                     help='The axis and its rig: the name of a shipped scene or a file.'),
-        click.option('--rate', type=float, metavar='HZ', help='How often it is asked: time.rate, or a whole part of it '
-                                                              '[default: after each step].'),
+                     help='Axis and its rig: a shipped scene or a file.'),
+        click.option('--rate', type=float, metavar='HZ', help='Controller rate: time.rate divided by a whole number '
+                                                              '[default: time.rate].'),
         click.option('--gain', 'gains', multiple=True, metavar='NAME=VALUE', help=help_of_gain),
     )
     return lambda command: functools.reduce(lambda decorated, option: option(decorated), reversed(options), command)
@@ -218,13 +232,15 @@ def controller_options(help_of_gain: str) -> Callable[[ClickCommand], ClickComma
 # The options of every verb that runs a study.
 
 _OF_WORKERS = (
-    click.option('--workers', metavar='N|all', help='Processes to use [default: 1].'),
-    click.option('--scheduler', metavar='ADDRESS', help='Use the workers of this Dask scheduler instead.'),
-    click.option('--resume', is_flag=True, help='Go on with what was interrupted.'),
+    click.option('--workers', metavar='N|all', help='Number of processes [default: 1].'),
+    click.option('--scheduler', metavar='ADDRESS', help='Use the workers of this Dask scheduler.'),
+    click.option('--resume', is_flag=True, help='Continue an interrupted study.'),
 )
 _OPTIONS = (
-    click.option('--out', required=True, metavar='FOLDER', help='Write points.csv (with pandas .parquet too) there.'),
-    click.option('--duration', type=float, metavar='S', help='Simulated time, s [default: until the motion settles].'),
+    click.option('--out', required=True, metavar='FOLDER',
+                 help='New folder for points.csv (with pandas also .parquet).'),
+    click.option('--duration', type=float, metavar='SECONDS',
+                 help='Simulated time [default: until the motion settles].'),
 )
 
 

@@ -14,16 +14,16 @@ _ROUNDS, _QUICK_ROUNDS = 7, 1
 _QUICK_CASES, _QUICK_DURATION = ('A', 'paper_fig8'), 2.0   # s
 
 
-@click.command(short_help='Measure error against cost of every solver, and of others.')
+@click.command(short_help='Compare error and cost of all solvers and other simulators.')
 @click.option('--scenes', 'chosen', multiple=True, metavar='NAME...', help='A to D or shipped scenes [default: all].')
 @click.argument('more', nargs=-1, metavar='')
 @click.option('--out', metavar='FOLDER', help='Write bench.json, bench.md and the pictures there.')
-@click.option('--rounds', type=click.IntRange(1, 1000), metavar='N', help='Samples of each cost [default: 7].')
-@click.option('--quick', is_flag=True, help='Two scenes, 2 s, one sample: a check that it works, not a figure.')
+@click.option('--rounds', type=click.IntRange(1, 1000), metavar='N', help='Timing samples per case [default: 7].')
+@click.option('--quick', is_flag=True, help='Run two scenes for 2 s with one sample, as a smoke test.')
 def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, rounds: int | None, quick: bool) -> None:
-    """Measure error and cost of every solver and setting, and of other simulators where they are installed."""
+    """Measure error and cost of every solver and setting, and of other simulators that are installed."""
     if more and not chosen:
-        raise click.UsageError('name the scenes after --scenes.')
+        raise click.UsageError('Give the scenes after --scenes.')
     folder = _made(out) if out is not None else None
     from ..bench.contestants import contestants
     from ..bench.outside import batch_ratios, outside_ratios, ratios
@@ -54,7 +54,7 @@ def _made(path: str) -> Path:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError('--out', path, 'a folder that can be made', error.strerror or str(error)) from None
+        raise InputError('--out', path, 'a folder that can be created', error.strerror or str(error)) from None
     return folder
 
 

@@ -17,7 +17,7 @@ from .files import show
 def call(context: click.Context) -> None:
     """Call a service of a running node, and print its answer.
 
-    Exit codes: 0 done; 1 nobody answers; 2 wrong use, or the node refuses.  ROS_DOMAIN_ID must be that of the node.
+    Exit codes: 0 success; 1 no answer; 2 wrong usage, or the node refuses.  Set ROS_DOMAIN_ID to that of the node.
     """
     if context.invoked_subcommand is None:
         click.echo(context.get_help(), err=True)
@@ -27,9 +27,9 @@ def call(context: click.Context) -> None:
 def _of(node: str = 'feed_axis') -> Callable[[Callable[..., None]], Any]:
     """Return what adds the options that every call has, with the name of the node where none is given."""
     timeout = click.option('--timeout', type=click.FloatRange(0.1, 3600.0), default=10.0, show_default=True,
-                           metavar='S', help='Time to wait for the node, and for its answer, s.')
+                           metavar='SECONDS', help='Time to wait for the node and for its answer.')
     name = click.option('--node', default=node, show_default=True, metavar='NAME',
-                        help=f'Name of the node, with its namespace: /cell/{node}.')
+                        help=f'Name of the node, with its namespace, such as /cell/{node}.')
     return lambda command: name(timeout(command))
 
 
@@ -37,7 +37,7 @@ def _of(node: str = 'feed_axis') -> Callable[[Callable[..., None]], Any]:
 @click.argument('switch', type=click.Choice(['on', 'off']), default='on', metavar='[on|off]')
 @_of()
 def _record(switch: str, node: str, timeout: float) -> None:
-    """Begin a recording (on, if left out), or end it (off)."""
+    """Start (on, the default) or stop (off) a recording."""
     _do('record', {'data': switch == 'on'}, node, timeout)
 
 
@@ -50,44 +50,45 @@ def _ask(name: str, service: str, request: Mapping[str, object], text: str,
         _do(service, request, node, timeout)
 
 
-_ask('reset', 'reset', {}, 'Begin a new run: time, counters, faults and commands anew.')
-_ask('pause', 'set_paused', {'data': True}, 'Let simulation time stand still.')
-_ask('resume', 'set_paused', {'data': False}, 'Let simulation time go on.')
-_ask('restart', 'restart', {}, 'Let an example controller begin its moves anew.',
-     'Let a controller begin its moves anew.', 'cascade_controller')
-_ask('play-next', 'play_next', {}, 'Let a paused replay send its next message.',
-     'Let a paused replay send one message.', 'replay')
+_ask('reset', 'reset', {}, 'Start a new run: reset time, counters, faults and commands.')
+_ask('pause', 'set_paused', {'data': True}, 'Pause simulation time.')
+_ask('resume', 'set_paused', {'data': False}, 'Resume simulation time.')
+_ask('restart', 'restart', {}, 'Restart the moves of an example controller.',
+     'Restart the moves of a controller.', 'cascade_controller')
+_ask('play-next', 'play_next', {}, 'Send the next message of a paused replay.',
+     'Send one message of a paused replay.', 'replay')
 
 
-@call.command('step', short_help='Make steps, in lock-step or paused.')
+@call.command('step', short_help='Step an axis in lock-step or paused.')
 @click.argument('steps', type=int, default=1)
 @click.option('--velocity', type=float, default=math.nan, metavar='V',
-              help='Velocity of the drive from these steps on, m/s [default: the one in force].')
+              help='Drive velocity from these steps on, in m/s [default: unchanged].')
 @click.option('--force', type=float, default=math.nan, metavar='F',
-              help='Force on the slider from these steps on, N [default: the one in force].')
+              help='Force on the slider from these steps on, in N [default: unchanged].')
 @_of()
 def _step(steps: int, velocity: float, force: float, node: str, timeout: float) -> None:
-    """Make STEPS steps (1 if left out) of an axis in lock-step, or paused; print the events and the state."""
+    """Make STEPS steps (default: 1) of an axis in lock-step or paused; print the events and the state."""
     request = {'steps': steps, 'velocity': velocity, 'force': force}
     answer = answer_of_node('step', request, node, timeout, max(steps, 0) * 1e-3)
     from ..ros.service_call import step_lines
     show(step_lines(answer))
 
 
-@call.command('inject-fault', short_help='Let something go wrong.')
+@call.command('inject-fault', short_help='Inject a fault.')
 @click.argument('kind')
-@click.option('--value', type=float, metavar='X', help='In the unit of the kind; needed by those that have one.')
-@click.option('--start', type=float, default=0.0, show_default=True, metavar='S', help='From now until it begins, s.')
-@click.option('--duration', type=float, default=math.inf, show_default=True, metavar='S',
-              help='How long it lasts, s; inf: until it is cleared.')
-@click.option('--id', 'fault', default='', metavar='ID', help='Name of the fault [default: one is chosen].')
+@click.option('--value', type=float, metavar='X', help='Size of the fault, in the unit of its kind.')
+@click.option('--start', type=float, default=0.0, show_default=True, metavar='SECONDS',
+              help='Delay before the fault begins.')
+@click.option('--duration', type=float, default=math.inf, show_default=True, metavar='SECONDS',
+              help='Duration; inf lasts until the fault is cleared.')
+@click.option('--id', 'fault', default='', metavar='ID', help='Name of the fault [default: chosen by the node].')
 @_of()
 def _inject_fault(kind: str, value: float | None, start: float, duration: float, fault: str, node: str,
                   timeout: float) -> None:
-    """Let something go wrong, of a KIND in the list, with its --value.
+    """Inject a fault of a KIND, with its --value.
 
-    friction_scale (factor), force_pulse (N), encoder_freeze, encoder_step (m), encoder_dropout (share), command_loss
-    (share), command_delay (s), drive_freeze
+    Kinds: friction_scale (factor), force_pulse (N), encoder_freeze, encoder_step (m), encoder_dropout (share),
+    command_loss (share), command_delay (s), drive_freeze.
     """
     from ..core.errors import InputError
     from ..simulation.faults import value_of_kind
@@ -98,11 +99,14 @@ def _inject_fault(kind: str, value: float | None, start: float, duration: float,
     _do('inject_fault', request, node, timeout)
 
 
-@call.command('clear-faults', short_help='End faults.')
+@call.command('clear-faults', short_help='Clear faults.')
 @click.argument('ids', metavar='[ID]...', nargs=-1)
 @_of()
 def _clear_faults(ids: tuple[str, ...], node: str, timeout: float) -> None:
-    """End the faults of these ids, or all: then the drive takes commands again after a time-out, too."""
+    """Clear the faults with these ids, or all.
+
+    Clearing all also lets the drive take commands again after a time-out.
+    """
     if not ids:
         _do('clear_faults', {}, node, timeout)
     for fault in ids:
@@ -113,7 +117,7 @@ def _clear_faults(ids: tuple[str, ...], node: str, timeout: float) -> None:
 @click.argument('changes', metavar='A.B=VALUE...', nargs=-1, required=True)
 @_of()
 def _set(changes: tuple[str, ...], node: str, timeout: float) -> None:
-    """Change parameters of a running node, all of them or none: gains of a controller, axis.mass, rate of a replay."""
+    """Change parameters of a running node, all or none: controller gains, axis.mass, rate of a replay."""
     from ..scene import parse_override
 
     values = dict(parse_override(change) for change in changes)

@@ -10,26 +10,27 @@ from .arguments import SceneChanges, check_sources, run_of, scene_changes, scene
 from .files import PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_json, write_text
 
 
-@verb(short_help='Check runs against limits: pass or fail.')
+@verb(short_help='Check runs against limits; exit with 3 if one fails.')
 @sources_argument
-@click.option('--limits', 'limits_file', metavar='FILE.yaml', help='The limits (docs/check.md).')
-@click.option('--circle', is_flag=True, help='Take the runs as the axes x and y of a circle (ISO 230-4).')
-@click.option('--radius', type=float, metavar='M', help='Radius of the nominal circle, m [default: as commanded].')
-@click.option('--positioning', is_flag=True, help='Print the figures of ISO 230-2 too.')
+@click.option('--limits', 'limits_file', metavar='FILE.yaml', help='Limits to check (docs/check.md).')
+@click.option('--circle', is_flag=True, help='Treat the runs as axes x and y of a circle (ISO 230-4).')
+@click.option('--radius', type=float, metavar='METRES',
+              help='Radius of the nominal circle [default: as commanded].')
+@click.option('--positioning', is_flag=True, help='Also print the figures of ISO 230-2.')
 @click.option('--plot', type=PICTURE, metavar='FILE.png|pdf|svg', help='Draw the deviation from the circle.')
 @scene_duration
 @click.option('--junit', type=TEXT, metavar='FILE.xml',
-              help='Write JUnit XML for a CI server ("-": to standard output).')
+              help='Write JUnit XML for a CI server ("-" for standard output).')
 @click.option('--json', 'json_file', type=TEXT, metavar='FILE.json',
-              help='Write everything measured ("-": to standard output).')
+              help='Write all measurements ("-" for standard output).')
 @scene_changes('Change a parameter of a scene.')
 def check(sources: tuple[str, ...], limits_file: str | None, circle: bool, radius: float | None, positioning: bool,
           plot: str | None, duration: float | None, changes: SceneChanges, junit: str | None, json_file: str | None
           ) -> None:
-    """Check each RUN_OR_SCENE - a run folder, or a scene to simulate - against limits; exit with 3 when one fails.
+    """Check each RUN_OR_SCENE (a run folder, or a scene to simulate) against limits; exit with 3 if one fails.
 
-    Of several, those that cannot be checked are named in the end, and the exit code is 2.  --circle takes the runs of x
-    and y, or a bag of both, and of the other sense behind them.
+    If some of several cannot be checked, they are listed at the end and the exit code is 2.  With --circle, give the
+    runs of x and y, or a bag of both, then those of the other direction.
     """
     check_sources(sources, duration, changes, once=not circle)    # x goes the same way in both senses
     _check_options(limits_file, circle, radius, positioning, plot)
@@ -76,6 +77,6 @@ def _check_options(limits_file: str | None, circle: bool, radius: float | None, 
     if circle and positioning:
         raise click.UsageError('--circle and --positioning exclude each other.')
     if not circle and (radius is not None or plot is not None):
-        raise click.UsageError('--radius and --plot are for --circle.')
+        raise click.UsageError('--radius and --plot need --circle.')
     if limits_file is None and not (circle or positioning):
         raise click.UsageError("Missing option '--limits'.")

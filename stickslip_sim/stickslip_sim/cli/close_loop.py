@@ -13,43 +13,44 @@ from .arguments import Members, SceneChanges, command_line, controller_options, 
 from .files import FOLDER, PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_json, write_text
 
 
-@verb(short_help='Let a controller of yours drive an axis.')
-@controller_options('Make the class NAME with this argument; a range LOW:HIGH[:N][:log] varies it.')
-@click.option('--duration', type=float, required=True, metavar='S', help='Simulated time, s.')
-@click.option('--setpoint', metavar='FILE.csv', help='Where the slider should be: columns time and position.')
+@verb(short_help='Drive an axis with your own controller.')
+@controller_options('Argument of the class NAME; a range LOW:HIGH[:N][:log] varies it.')
+@click.option('--duration', type=float, required=True, metavar='SECONDS', help='Simulated time.')
+@click.option('--setpoint', metavar='FILE.csv', help='Setpoint of the slider: columns time and position.')
 @click.option('--over', 'ranges', multiple=True, metavar='A.B=LOW:HIGH[:N][:log]',
               shell_complete=completion.complete_parameters,
-              help='Vary a parameter of the axis or its rig: every combination of N values.')
-@click.option('--samples', type=int, metavar='N', help='Draw N points (Sobol) instead; then ranges without N.')
-@click.option('--with', 'known', metavar='FILE.yaml', help='Draw parameters from the distributions of a file, too.')
-@click.option('--seed', type=int, metavar='SEED', help='Of the sample [default: that of the file or the scene].')
-@click.option('--vectorized', is_flag=True, help='The controller gets and answers arrays, one entry an axis.')
+              help='Vary a parameter of the axis or its rig; runs every combination of N values.')
+@click.option('--samples', type=int, metavar='N', help='Draw N Sobol points instead; omit N in the ranges.')
+@click.option('--with', 'known', metavar='FILE.yaml', help='Also draw parameters from the distributions in a file.')
+@click.option('--seed', type=int, metavar='SEED', help='Seed of the sample [default: that of the file or the scene].')
+@click.option('--vectorized', is_flag=True, help='Call the controller with arrays, one entry per axis.')
 @click.option('--limits', metavar='FILE.yaml', help='Check the run against these limits (docs/check.md).')
 @click.option('--out', type=FOLDER, metavar='FOLDER', help='Record the run as a ROS 2 bag.')
-@click.option('--plot', type=PICTURE, metavar='FILE.png', help='Draw the run (.png, .pdf or .svg).')
-@click.option('--junit', type=TEXT, metavar='FILE.xml', help='With --limits: JUnit XML ("-": to standard output).')
+@click.option('--plot', type=PICTURE, metavar='FILE.png', help='Plot the run (.png, .pdf or .svg).')
+@click.option('--junit', type=TEXT, metavar='FILE.xml',
+              help='With --limits: write JUnit XML ("-" for standard output).')
 @click.option('--json', 'json_file', type=TEXT, metavar='FILE.json',
-              help='Write the receipt, and with --limits what was measured ("-": to standard output).')
+              help='Write the receipt, with --limits also the measurements ("-" for standard output).')
 @worker_options
 @scene_changes('Change a parameter of the scene.')
 def close_loop(gains: tuple[str, ...], out: str | None, plot: str | None, junit: str | None, json_file: str | None,
                **given: Any) -> None:
-    """Let a controller drive the axis of a scene: NAME in FILE.py, a class or a function (docs/closed_loop.md).
+    """Drive the axis of a scene with NAME in FILE.py, a controller class or function (docs/closed_loop.md).
 
-    It is called as controller(t, measured), and returns the velocity of the drive.  Exit code 3 when one of --limits is
-    not kept.
+    It is called as controller(t, measured) and returns the drive velocity.  The exit code is 3 if one of --limits
+    fails.
 
-    With --over, --with or a range of --gain it runs at many points.  FOLDER gets their table, the worst run of each
+    With --over, --with or a range of --gain, many points are run.  FOLDER receives their table, the worst run of each
     limit as a bag, and a map; Ctrl-C keeps the finished points.
     """
     if junit is not None and given['limits'] is None:
-        raise click.UsageError('--junit is of no use alone: give --limits FILE.yaml too.')
+        raise click.UsageError('--junit needs --limits FILE.yaml.')
     from ..closed_loop.many import is_range
     from ..core.errors import VerdictError
 
     is_many = given['ranges'] or given['known'] or any(is_range(gain.partition('=')[2]) for gain in gains)
     if is_many and (out is None or junit is not None):
-        raise click.UsageError('many points need --out FOLDER, and have no --junit.')
+        raise click.UsageError('Many points need --out FOLDER and do not take --junit.')
     drawing, report, values, written, complaint = (
         _many(gains, out, **given) if is_many and out is not None else _once(gains, out, junit, **given))
     draw(plot, drawing)
@@ -67,7 +68,7 @@ def _once(gains: tuple[str, ...], out: str | None, junit: str | None, members: M
     """Run one loop, record it, and check it; return how it is drawn, report, values, folder, and what it misses."""
     of_many['workers'] = not isinstance(members, nullcontext)
     if given := [name for name, value in of_many.items() if value not in (None, False, ())]:
-        raise click.UsageError(f'--{given[0]} is for many points: give --over, --with or a range of --gain too.')
+        raise click.UsageError(f'--{given[0]} needs --over, --with or a range of --gain.')
     from ..check.limits import load_limits
     from ..check.report import check_report, checks_as_values, complaint, junit_text
     from ..closed_loop import close_loop as closed_loop

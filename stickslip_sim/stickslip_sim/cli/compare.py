@@ -17,32 +17,33 @@ if TYPE_CHECKING:
 _MOST = 8        # runs, rows of a picture
 
 
-@verb(short_help="Draw the paper's figures for a run, and check its statements.")
+@verb(short_help="Draw the paper's figures for a run and check its statements.")
 @sources_argument
 @click.option('--out', type=FOLDER, required=True, metavar='FOLDER', help='New folder for the report and the pictures.')
-@click.option('--controllers', is_flag=True, help='Set recorded runs of controllers side by side instead.')
-@click.option('--limits', metavar='FILE.yaml', help='With --controllers: check them, too (docs/check.md).')
-@click.option('--window', metavar='A:B', help='With --controllers: this part, s [default: where the setpoint moves].')
-@click.option('--duration', type=float, metavar='S',
-              help='Simulated time of a scene, s [default: 10 s, or more for 20 cycles].')
+@click.option('--controllers', is_flag=True, help='Compare recorded runs of controllers side by side instead.')
+@click.option('--limits', metavar='FILE.yaml', help='With --controllers: also check these limits (docs/check.md).')
+@click.option('--window', metavar='A:B',
+              help='With --controllers: this time span in s [default: where the setpoint moves].')
+@click.option('--duration', type=float, metavar='SECONDS',
+              help='Simulated time of a scene [default: 10 s, or more for 20 cycles].')
 @scene_changes('Change a parameter of every scene.')
 def compare(sources: tuple[str, ...], out: str, controllers: bool, limits: str | None, window: str | None,
             duration: float | None, changes: SceneChanges) -> None:
-    """Draw runs as the paper's figures 4, 6, 7 and 8, and say which statements of the paper hold on each.
+    """Draw runs like the paper's figures 4, 6, 7 and 8, and check which of its statements hold for each.
 
-    A run is the folder of a recorded one, or a scene, which is simulated.  Exit with 3 when a statement that applies
-    to a run does not hold.  With a measured run (see import) the others are drawn over it, and differences of their
-    cycles listed; a scene then starts where that run does, and what was measured of its drive and force moves it.
+    Give run folders, or scenes to simulate.  The exit code is 3 if a statement that applies to a run does not hold.
+    With a measured run (see import), the other runs are drawn over it and compared cycle by cycle; scenes start at its
+    initial state and are driven by its measured drive and force.
 
-    With --controllers: speed, error and drive force of each run in a column, and its figures of control.  Exit with 3
-    when one of --limits is not kept.
+    With --controllers, each run has a column with speed, error, drive force and its control figures.  The exit code is
+    3 if one of --limits fails.
     """
     _check(sources, duration, changes)
     if controllers:
         _side_by_side(sources, limits, window, out)
         return
     if limits or window:
-        raise click.UsageError('--limits and --window are for --controllers.')
+        raise click.UsageError('--limits and --window need --controllers.')
     from ..compare.report import write_comparison
     from ..core.errors import VerdictError
 
@@ -81,7 +82,7 @@ def _check(runs: tuple[str, ...], duration: float | None, changes: SceneChanges)
     if all(map(is_recorded, runs)):
         for option, given in (('--duration', duration), ('--set', changes.overrides or None)):
             if given is not None:
-                raise click.UsageError(f'{option} is for scenes, and all of these are recorded runs.')
+                raise click.UsageError(f'{option} applies to scenes, but these are all recorded runs.')
 
 
 def _given(source: str, changes: SceneChanges) -> 'Run | Scene':

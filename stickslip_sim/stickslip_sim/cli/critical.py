@@ -20,13 +20,13 @@ _ACCURACY = 1e-9
 @verb(short_help='Find the value at which stick-slip begins or ends.')
 @scene_argument
 @click.option('--of', 'name', required=True, metavar='A.B', shell_complete=completion.complete_parameters,
-              help='The parameter, or an element of a list: A.B[1].')
-@click.option('--between', metavar='LOW:HIGH', help='Where to look [default: 1/100 to 100 times its value].')
+              help='Parameter to search, or an element of a list: A.B[1].')
+@click.option('--between', metavar='LOW:HIGH', help='Search range [default: 1/100 to 100 times its value].')
 @click.option('--accuracy', type=float, default=_ACCURACY, metavar='REL',
-              help=f'Relative width of what is left open [default: {_ACCURACY:g}].')
+              help=f'Relative width of the final bracket [default: {_ACCURACY:g}].')
 @scene_changes('Change a parameter of the scene.')
 def critical(scene: str, name: str, between: str | None, accuracy: float, changes: SceneChanges) -> None:
-    """Find where SCENE goes over from stick-slip to sliding: from rest, and from sliding."""
+    """Find where SCENE changes from stick-slip to sliding, starting from rest and from sliding."""
     from ..study.critical import critical_of
     from ..study.report import critical_report
 

@@ -13,31 +13,36 @@ from .arguments import SceneChanges, scene_argument, scene_changes, verb
 from .files import FOLDER, new_folder, progress_bar, say_written, show
 
 
-@verb(short_help='Propose the feed that would narrow parameters most.')
+@verb(short_help='Propose the feed that narrows parameters most.')
 @scene_argument
 @click.option('--for', 'parameters', required=True, metavar='A.B,...', shell_complete=completion.complete_parameters,
-              help='The parameters to narrow, as friction.static.time_constant,friction.static.limit.')
-@click.option('--duration', type=float, default=10.0, show_default=True, metavar='S', help='Of the run, s.')
-@click.option('--speeds', metavar='LOW:HIGH', help="Of the feeds, m/s [default: 1/10 to 10 times the scene's].")
-@click.option('--travel', type=float, default=math.inf, metavar='M', help='How far the drive may go, m.')
-@click.option('--rate', type=float, default=1000.0, show_default=True, metavar='HZ', help='Readings a second.')
-@click.option('--resolution', type=float, default=1e-6, show_default=True, metavar='M', help='Of the position, m.')
-@click.option('--noise', type=float, default=0.0, show_default=True, metavar='M', help='Of the position, m rms.')
-@click.option('--force-noise', type=float, metavar='N', help='The drive force is measured, with this noise, N rms.')
+              help='Parameters to narrow, such as axis.mass,friction.static.limit.')
+@click.option('--duration', type=float, default=10.0, show_default=True, metavar='SECONDS',
+              help='Duration of the run.')
+@click.option('--speeds', metavar='LOW:HIGH', help="Range of feeds in m/s [default: 1/10 to 10 times the scene's].")
+@click.option('--travel', type=float, default=math.inf, metavar='METRES',
+              help='Longest travel of the drive.')
+@click.option('--rate', type=float, default=1000.0, show_default=True, metavar='HZ', help='Sampling rate.')
+@click.option('--resolution', type=float, default=1e-6, show_default=True, metavar='METRES',
+              help='Resolution of the position.')
+@click.option('--noise', type=float, default=0.0, show_default=True, metavar='METRES',
+              help='RMS noise of the position.')
+@click.option('--force-noise', type=float, metavar='NEWTONS',
+              help='Measure the drive force too, with this RMS noise.')
 @click.option('--known', type=float, default=0.3, show_default=True, metavar='SHARE',
-              help='Standard deviation of each parameter before, a share.')
+              help='Prior relative standard deviation of each parameter.')
 @click.option('--scatter', type=float, default=0.01, show_default=True, metavar='SHARE',
-              help='How far each parameter scatters from slip to slip, a share.')
+              help='Relative scatter of each parameter from slip to slip.')
 @click.option('--criterion', type=click.Choice(('D', 'A')), default='D', show_default=True,
-              help='What is least: the volume that is left to the parameters, or the sum of their variances.')
+              help='Minimise the volume of the confidence region (D) or the sum of variances (A).')
 @click.option('--out', type=FOLDER, metavar='FOLDER',
-              help='New folder for the scene that runs it, and one page.')
+              help='New folder for the scene that runs it and a one-page report.')
 @scene_changes('Change a parameter of the scene.')
 def design(scene: str, parameters: str, speeds: str | None, out: str | None, changes: SceneChanges, **wishes: Any
            ) -> None:
-    """Propose the feed whose run would narrow parameters of a scene most: constant, steps, ramps, start-stop, sine, ...
+    """Propose the feed whose run narrows the parameters of SCENE most: constant, steps, ramps, start-stop, sine, ...
 
-    docs/sensitivities.md says how they are ranked.
+    See docs/sensitivities.md for the ranking.
     """
     from ..sensitivity import experiments
     from ..sensitivity.report import EXPERIMENT_PAGE, EXPERIMENT_SCENE, design_report, write_design

@@ -11,17 +11,17 @@ from .arguments import SceneChanges, check_run, recorded_run, scene_changes, ver
 from .files import FILE, say_written, write_text
 
 
-@verb(short_help='Write a scene as a page with sliders.')
+@verb(short_help='Write a scene as an interactive web page.')
 @click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
-@click.option('--out', type=FILE, default='explore.html', metavar='FILE.html', help='Write the page there [default: '
+@click.option('--out', type=FILE, default='explore.html', metavar='FILE.html', help='Page to write [default: '
                                                                                    'explore.html].')
-@click.option('--beside', metavar='RUN', help='Draw a measured run behind: a run folder, a bag, or a CSV file with '
-                                              'time, position, velocity or drive_force, in SI.')
+@click.option('--beside', metavar='RUN', help='Draw a measured run behind it: a run folder, a bag, or a CSV file '
+                                              'with time, position, velocity or drive_force in SI units.')
 @scene_changes('Change a parameter of the scene.')
 def explore(scene: str, out: str, beside: str | None, changes: SceneChanges) -> None:
-    """Write SCENE as one file of HTML that opens in any browser, without a server and without the network.
+    """Write SCENE as one interactive HTML file that works in any browser, without a server or a network.
 
-    A slider moves, the exact engine runs, the picture follows; "Copy scene" gives the scene for the tool and the node.
+    Move a slider and the exact engine redraws the motion; "Copy scene" copies the scene for the tool and the node.
     """
     from ..core.errors import InputError
     from ..explorer.page import COLUMNS, page_of, thinned

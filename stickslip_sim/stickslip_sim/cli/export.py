@@ -11,17 +11,17 @@ from .arguments import check_run, run_argument, verb
 from .files import FILE, TEXT, say_written, whole, write_text
 
 
-@verb(short_help='Write a recorded run as a table, CSV or Parquet.')
+@verb(short_help='Export a recorded run as CSV or Parquet.')
 @run_argument
 @click.option('--csv', 'csv_file', type=TEXT, metavar='FILE.csv',
-              help='Write numbers with 17 digits ("-": to standard output).')
-@click.option('--parquet', type=FILE, metavar='FILE.parquet', help='Write a typed, compressed table.')
-@click.option('--topic', default='slider_state', metavar='T', help='What to export [default: slider_state].')
+              help='Write a CSV file with 17 digits ("-" for standard output).')
+@click.option('--parquet', type=FILE, metavar='FILE.parquet', help='Write a Parquet file.')
+@click.option('--topic', default='slider_state', metavar='TOPIC', help='Topic to export [default: slider_state].')
 def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> None:
-    """Write a topic of the recorded RUN as a table: a row for each message, a column for each number and text.
+    """Write a topic of the recorded RUN as a table, with one row per message and one column per number or text.
 
-    log_time is simulation time, publish_time is that of the message's stamp, both in ns; sequence is the step.  A
-    normal force that varies is a column more of friction_force.
+    log_time is simulation time and publish_time the message stamp, both in ns; sequence is the step.  A varying normal
+    force adds a column to friction_force.
     """
     if csv_file is None and parquet is None:
         raise click.UsageError('Give --csv FILE.csv or --parquet FILE.parquet.')

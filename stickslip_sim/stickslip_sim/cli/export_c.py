@@ -11,14 +11,15 @@ from .arguments import SceneChanges, scene_changes, verb
 from .files import say_written
 
 
-@verb(short_help='Write the engine as one file of C, its header and an example.')
+@verb(short_help='Export the engine as C source, with a header and an example.')
 @click.argument('folder', metavar='DIR', type=click.Path())
 @click.option('--scene', default='paper_fig8', metavar='SCENE', shell_complete=completion.complete_scenes,
-              help='What the example runs [default: paper_fig8].')
-@click.option('--duration', type=float, default=10.0, metavar='S', help='How long it runs, s [default: 10].')
+              help='Scene of the example [default: paper_fig8].')
+@click.option('--duration', type=float, default=10.0, metavar='SECONDS',
+              help='Simulated time of the example [default: 10].')
 @scene_changes('Change a parameter of the scene.')
 def export_c(folder: str, scene: str, duration: float, changes: SceneChanges) -> None:
-    """Write stickslip_axis.c, stickslip_axis.h and example.c into DIR, which is made where it is missing."""
+    """Write stickslip_axis.c, stickslip_axis.h and example.c into DIR, creating it if necessary."""
     from ..core.errors import InputError
     from ..plain_c.c_files import NAMES, written
 

@@ -9,13 +9,13 @@ from .arguments import SceneChanges, scene_changes, verb
 from .files import FILE, say_written, whole
 
 
-@verb(short_help='Write a scene as an FMU for co-simulation, FMI 3.0 or 2.0.')
+@verb(short_help='Export a scene as an FMU for co-simulation.')
 @click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
-@click.option('--out', type=FILE, required=True, metavar='FILE.fmu', help='Write the FMU.')
-@click.option('--fmi', 'version', type=click.Choice(['3', '2']), default='3', help='The version of FMI [default: 3].')
+@click.option('--out', type=FILE, required=True, metavar='FILE.fmu', help='FMU to write.')
+@click.option('--fmi', 'version', type=click.Choice(['3', '2']), default='3', help='FMI version [default: 3].')
 @scene_changes('Change a parameter of the scene.')
 def export_fmu(scene: str, out: str, version: str, changes: SceneChanges) -> None:
-    """Write SCENE as an FMU for co-simulation, with the library of this platform and its sources."""
+    """Export SCENE as an FMU for co-simulation (FMI 3.0 or 2.0), with its sources and the library for this platform."""
     from ..fmu.fmu_file import fmu_bytes
 
     content = fmu_bytes(changes.load(scene), int(version))

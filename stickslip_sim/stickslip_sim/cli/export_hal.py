@@ -9,14 +9,14 @@ from .arguments import SceneChanges, scene_changes, verb
 from .files import FOLDER, new_folder, say_written
 
 
-@verb(short_help='Write the axis as a component of LinuxCNC.')
+@verb(short_help='Export the axis as a LinuxCNC component.')
 @click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
-@click.option('--out', type=FOLDER, required=True, metavar='DIR', help='New folder of the component.')
+@click.option('--out', type=FOLDER, required=True, metavar='DIR', help='New folder for the component.')
 @scene_changes('Change a parameter of the scene.')
 def export_hal(scene: str, out: str, changes: SceneChanges) -> None:
-    """Write stickslip.comp, and the engine that it includes, into DIR: for halcompile (docs/linuxcnc.md).
+    """Export the axis of SCENE as stickslip.comp, for LinuxCNC's halcompile (docs/linuxcnc.md).
 
-    The pin velocity is the drive; the profile of the scene's drive is left out.
+    The pin velocity moves the drive and replaces the scene's drive profile.
     """
     from ..plain_c.hal_files import hal_files
 

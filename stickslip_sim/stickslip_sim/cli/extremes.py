@@ -12,12 +12,12 @@ from .files import check_file, say_written, write_text
 _FORMATS = ('.json', '.md')
 
 
-@click.command(short_help='Measure the engine on what breaks other simulators.')
+@click.command(short_help='Measure the engine on cases that break other simulators.')
 @click.option('--only', metavar='X1,X7', help='Measure only these.')
 @click.option('--quick', is_flag=True, help='In a reduced size, as the tests do.')
 @click.option('--out', metavar='FILE.json|FILE.md', help='Write the table to a file, too.')
 def extremes(only: str | None, quick: bool, out: str | None) -> None:
-    """Measure the engine on the extremes; exit with 3 when a mark is missed."""
+    """Measure the engine on extreme cases; exit with 3 if it misses a mark."""
     if out is not None:
         _check_out(out)
     _check_mpmath()
@@ -47,7 +47,7 @@ def extremes(only: str | None, quick: bool, out: str | None) -> None:
 def _check_out(out: str) -> None:
     from ..core.errors import InputError
     if Path(out).suffix not in _FORMATS:
-        raise InputError('--out', out, 'a file ending in .json or .md', 'name it so')
+        raise InputError('--out', out, 'a file ending in .json or .md', 'change its ending')
     check_file('--out', out)
 
 

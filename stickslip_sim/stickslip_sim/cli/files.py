@@ -36,7 +36,7 @@ class Output(click.types.StringParamType):
     def check(self, option: str, path: str) -> None:
         """Raise InputError unless it can be written."""
         if self._endings and Path(path).suffix not in self._endings:
-            raise InputError(option, path, f'a file ending in {" or ".join(self._endings)}', 'name it so')
+            raise InputError(option, path, f'a file ending in {" or ".join(self._endings)}', 'change its ending')
         if not (self._to_stdout and path == STDOUT):
             self._check(option, path)
 
@@ -66,13 +66,13 @@ def check_file(option: str, path: str) -> None:
     place = _real(path)
     for name, other in _files_of_the_command(option):
         if _real(other) == place:
-            raise InputError(option, path, f'another place than that of {name}', 'name a file of its own')
+            raise InputError(option, path, f'a different file than {name}', 'choose another name')
     if place.is_dir():
         raise InputError(option, path, 'a file', 'this is a folder: add a file name')
     _check_folder(option, path, place.parent)
     _check_near(option, path, place.parent)
     if place.exists() and not os.access(place, os.W_OK):
-        raise InputError(option, path, 'a file that can be written', 'change its permissions or choose another name')
+        raise InputError(option, path, 'a writable file', 'change its permissions or choose another name')
 
 
 def check_picture(option: str, path: str) -> None:
@@ -86,7 +86,7 @@ def check_new_folder(option: str, path: str) -> None:
     place = Path(os.path.abspath(path))
     if os.path.lexists(place):
         raise InputError(option, path, 'a folder that does not exist',
-                         'a run is never overwritten: choose another name')
+                         'runs are never overwritten: choose another name')
     _check_folder(option, path, place.parent)
 
 
@@ -96,7 +96,7 @@ def check_distinct(targets: Iterable[tuple[str, str]]) -> None:
     for option, path in targets:
         place = _real(path)
         if place in seen and (path == STDOUT or not _is_special(place)):
-            raise InputError(option, path, f'another place than that of {seen[place]}', 'name a file of its own')
+            raise InputError(option, path, f'a different file than {seen[place]}', 'choose another name')
         seen[place] = option
 
 
@@ -143,7 +143,7 @@ def write_text(path: str, lines: Iterable[str]) -> None:
     """Write lines to a file, or to standard output for '-', whose errors are left to the end of the tool (`main`)."""
     if path == STDOUT:
         if sys.stdout is None:
-            raise InputError('output', 'standard output', 'open', 'the process that started this closed it')
+            raise InputError('output', 'standard output', 'open', 'the parent process closed it')
         sys.stdout.writelines(lines)
         sys.stdout.flush()
         return
@@ -188,7 +188,7 @@ def _refusing(path: str) -> Iterator[None]:
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise InputError('output', path, 'a place that can be written', error.strerror or str(error)) from None
+        raise InputError('output', path, 'a writable place', error.strerror or str(error)) from None
 
 
 def _files_of_the_command(but: str) -> Iterator[tuple[str, str]]:
@@ -214,16 +214,16 @@ def _check_folder(option: str, path: str, folder: Path) -> None:
     """Raise InputError unless a folder can be written in, or be made."""
     there = nearest_existing(folder)
     if not there.is_dir():
-        raise InputError(option, path, f'in a folder; {there} is none', 'choose another place')
+        raise InputError(option, path, f'in a folder; {there} is a file', 'choose another place')
     if not os.access(there, os.W_OK | os.X_OK):
-        raise InputError(option, path, 'in a folder that can be written', 'choose another place')
+        raise InputError(option, path, 'in a writable folder', 'choose another place')
 
 
 def _check_near(option: str, path: str, folder: Path) -> None:
     """Raise InputError unless the folder of a file is there, or is a new one within one that is."""
     if nearest_existing(folder) not in (folder, folder.parent):
-        raise InputError(option, path, f'in a folder, or in a new one within one; {folder.parent} is none',
-                         'make it, or look at the path')
+        raise InputError(option, path, f'in a folder, or one level below it; {folder.parent} does not exist',
+                         'create it, or check the path')
 
 
 # A progress bar on a terminal, for work that takes long: the share that is done where it is known, and the time.

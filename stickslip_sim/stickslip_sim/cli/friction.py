@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..core.errors import ALLOW
 from . import completion
-from .arguments import recorded_run, verb
+from .arguments import allow_implausible, recorded_run, verb
 from .files import FILE, PICTURE, SCENE_FILE, draw, say_written, write_text
 
 if TYPE_CHECKING:
@@ -17,50 +18,52 @@ if TYPE_CHECKING:
 
 _LAWS = ('best', 'table', 'gaussian', 'stribeck', 'exponential', 'hyperbolic', 'points')
 _OF_A_FILE = {'speed_unit': '--speed-unit', 'force_unit': '--force-unit', 'lead': '--lead', 'rated': '--rated',
-              'meant': '--meant'}
+              'meant': ALLOW}
 _OF_A_RUN = {'mass': '--mass', 'slowest': '--slowest', 'csv': '--csv'}
 
 
-@verb(short_help='Fit friction laws to a measured run or curve; write the scene.')
+@verb(short_help='Fit friction laws to a measured run or curve.')
 @click.argument('source', metavar='RUN|CURVE.csv', shell_complete=completion.complete_folders)
-@click.option('--mass', type=float, metavar='KG', help='Of a run: what the force accelerates [default: as --scene].')
-@click.option('--slowest', type=float, metavar='V', help='Of a run: slower is no motion, m/s [default: as of import].')
-@click.option('--csv', type=FILE, metavar='FILE.csv', help='Of a run: write the curve, with quartiles and counts.')
-@click.option('--speed-unit', metavar='UNIT', help='Of the first column: m/s, mm/s, um/s, m/min, ...; rpm, rad/s.')
-@click.option('--force-unit', metavar='UNIT', help='The second column is a force: N, kN, mN or lbf; N m; %.')
-@click.option('--lead', metavar='"10 MM"', help='Way of a turn, which converts rpm, rad/s and N m.')
-@click.option('--rated', metavar='"2.4 N M"', help='Rated torque or force, which converts a force in %.')
-@click.option('--normal-force', type=float, metavar='N',
-              help='The normal force under which it was measured, N [default: that of --scene, or friction in N].')
+@click.option('--mass', type=float, metavar='KG',
+              help='For a run: mass that the force accelerates [default: as --scene].')
+@click.option('--slowest', type=float, metavar='SPEED',
+              help='For a run: lowest speed in m/s that counts as motion [default: as imported].')
+@click.option('--csv', type=FILE, metavar='FILE.csv', help='For a run: write the curve with quartiles and counts.')
+@click.option('--speed-unit', metavar='UNIT', help='Unit of the first column: m/s, mm/s, um/s, m/min, ...; rpm, rad/s.')
+@click.option('--force-unit', metavar='UNIT',
+              help='Unit of the second column if it is a force: N, kN, mN, lbf, N m or %.')
+@click.option('--lead', metavar='LENGTH', help='Travel per turn, such as "10 mm", to convert rpm, rad/s and N m.')
+@click.option('--rated', metavar='FORCE', help='Rated force or torque, such as "2.4 N m", to convert %.')
+@click.option('--normal-force', type=float, metavar='NEWTONS',
+              help='Normal force of the measurement [default: that of --scene, or friction in N].')
 @click.option('--direction', type=click.Choice(('both', 'forward', 'backward', 'each')), default='both',
-              show_default=True, help='Which points to fit; backward ones have a negative speed; each: one by one.')
+              show_default=True, help='Points to fit; backward ones have negative speed, each fits both separately.')
 @click.option('--backward', is_flag=True,
-              help='Write it as the friction of motion backwards of --scene, which keeps its own forwards.')
+              help='Write the result as the backward friction of --scene, keeping its forward friction.')
 @click.option('--law', type=click.Choice(_LAWS), default=_LAWS[0], show_default=True,
-              help='Which to write; points: the measured points as a table.')
-@click.option('--scene', metavar='SCENE', help="The axis that gets this friction [default: the paper's].")
+              help='Law to write; points writes the measured points as a table.')
+@click.option('--scene', metavar='SCENE', help="Axis that receives this friction [default: the paper's].")
 @click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help='Change a parameter of the scene.')
 @click.option('--out', type=SCENE_FILE, metavar='SCENE.yaml', help='Write the scene.')
-@click.option('--plot', type=PICTURE, metavar='FILE.png', help='Draw points, laws and residuals (.png, .pdf or .svg).')
-@click.option('--meant', multiple=True, type=click.Choice(('speed', 'friction')),
-              help='Its highest value is meant, however unusual.')
+@click.option('--plot', type=PICTURE, metavar='FILE.png', help='Plot points, laws and residuals (.png, .pdf or .svg).')
+@allow_implausible('Accept an implausible speed or friction.', type=click.Choice(('speed', 'friction')))
 def friction(source: str, normal_force: float | None, direction: str, backward: bool, law: str, scene: str | None,
              changes: tuple[str, ...], out: str | None, plot: str | None, **given: Any) -> None:
-    """Fit the friction laws of the engine to a run, or to a measured curve: speed, then coefficient or force, a line.
+    """Fit the engine's friction laws to a run, or to a measured curve with a speed and a coefficient or force per line.
 
-    Of a run friction is its force less its inertia, in bins of the velocity.  The best law is the one with the lowest
-    AICc.  docs/friction_curve.md says more.
+    For a run, friction is the drive force minus inertia, binned by velocity.  The best law has the lowest AICc.  See
+    docs/friction_curve.md.
     """
     is_run = Path(source).is_dir() or Path(source).suffix == '.mcap'
     others = {option for name, option in (_OF_A_FILE if is_run else _OF_A_RUN).items() if given[name]}
     if others:
         raise click.UsageError(f'{", ".join(sorted(others))}: not for a {"run" if is_run else "file"}.')
     if out is None and (changes or scene is not None) and not is_run and not given['force_unit']:
-        raise click.UsageError('--scene and --set are for the scene: give --out SCENE.yaml too.')
+        raise click.UsageError('--scene and --set need --out SCENE.yaml.')
     if backward and (scene is None or direction not in ('both', 'backward')):
-        raise click.UsageError('--backward writes backward points into a scene: give --scene, no --direction.')
+        raise click.UsageError('--backward needs --scene and does not take --direction.')
     if plot is not None and direction == 'each':
-        raise click.UsageError('--plot draws one curve: give --direction both, forward or backward.')
+        raise click.UsageError('--plot draws one curve: choose --direction both, forward or backward.')
     from ..identification.curve.report import fitted_curves, scene_of_curves, scene_text_of
     from ..inputs import load_scene
     from ..scene import parse_override
@@ -103,6 +106,6 @@ def _of_file(source: str, normal_force: float | None, speed_unit: str | None, fo
     from ..inputs.units import drive_units
 
     if speed_unit is None:
-        raise click.UsageError('--speed-unit UNIT is needed: that of the first column of a file, as mm/s.')
+        raise click.UsageError('A file needs --speed-unit UNIT, the unit of its first column, such as mm/s.')
     units = units_of(speed_unit, force_unit, normal_force, drive_units(lead, rated))
     return load_curve(source, units, meant), units, ()

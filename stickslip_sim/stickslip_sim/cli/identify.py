@@ -19,23 +19,23 @@ if TYPE_CHECKING:
 
 @click.command(short_help='Find the parameters of an axis from a measured run.')
 @click.argument('runs', nargs=-1, required=True, metavar='RUN...', shell_complete=completion.complete_folders)
-@click.option('--scene', required=True, metavar='START', shell_complete=completion.complete_scenes,
-              help='The scene to begin with: a file, or a shipped one.')
-@click.option('--free', required=True, metavar='FILE.yaml', help='What is sought, and in which ranges.')
+@click.option('--scene', required=True, metavar='SCENE', shell_complete=completion.complete_scenes,
+              help='Scene to start from: a file or a shipped one.')
+@click.option('--free', required=True, metavar='FILE.yaml', help='Free parameters and their ranges.')
 @click.option('--out', required=True, metavar='FOLDER', help='New folder for the results.')
-@click.option('--laws', is_flag=True, help='Fit other laws of friction, too, and say which is best.')
-@click.option('--test', 'tests', multiple=True, metavar='RUN', help='Predict this run with the scene that is found.')
-@click.option('--each', multiple=True, metavar='A.B', help='Of several runs each has this free parameter of its own.')
-@click.option('--workers', metavar='N|all', help='Processes to use [default: 1].')
-@click.option('--resume', is_flag=True, help='Go on with what was interrupted.')
-@scene_changes('Change a parameter of the scene to begin with.')
+@click.option('--laws', is_flag=True, help='Also fit other friction laws and name the best.')
+@click.option('--test', 'tests', multiple=True, metavar='RUN', help='Predict this run with the identified scene.')
+@click.option('--each', multiple=True, metavar='A.B', help='Fit this free parameter separately for each run.')
+@click.option('--workers', metavar='N|all', help='Number of processes [default: 1].')
+@click.option('--resume', is_flag=True, help='Continue an interrupted search.')
+@scene_changes('Change a parameter of the initial scene.')
 def identify(runs: tuple[str, ...], scene: str, free: str, out: str, laws: bool, tests: tuple[str, ...],
              each: tuple[str, ...], workers: str | None, resume: bool, changes: SceneChanges) -> None:
-    """Find from a measured RUN of an axis the scene that reproduces it, with intervals; or from several at once.
+    """Find the scene that reproduces one or more measured runs, with confidence intervals.
 
-    FOLDER gets identified.yaml, a scene; posterior.yaml, what is left open of it, for uncertainty --with; report.html
-    and report.json.  Exit with 3 when the model does not fit the run; the report shows where.  Ctrl-C keeps the fits
-    that are done.
+    FOLDER receives the scene identified.yaml, its remaining uncertainty in posterior.yaml (for uncertainty --with),
+    report.html and report.json.  The exit code is 3 if the model does not fit; the report shows where.  Ctrl-C keeps
+    the finished fits.
     """
     from ..study.folder import process_count
 

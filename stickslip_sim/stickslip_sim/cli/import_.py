@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .arguments import verb
+from .arguments import allow_implausible, verb
 from .files import FOLDER, new_folder, say_written, show
 
 if TYPE_CHECKING:
@@ -20,33 +20,34 @@ _TELLING = 10**6   # samples that say it
 _ABOVE = 1.5    # of the noise: a threshold that it does not reach
 
 
-@verb('import', short_help='Make a run folder of a measurement, from a file or a bag.')
+@verb('import', short_help='Import a measurement from a file or a bag.')
 @click.argument('data', metavar='DATA|BAG')
 @click.option('--columns', multiple=True, required=True, metavar='time=T,position=X,...',
-              help='The column of each quantity, by name or number, or `row`; of a bag as joint_states:position[0].')
+              help='Column of each quantity by name or number, or `row`; in a bag, joint_states:position[0].')
 @click.option('--unit', multiple=True, metavar='position=mm,...',
-              help='Units [default: of the headings, or SI], with a factor if need be: position="-0.05 um".')
-@click.option('--lead', metavar='"10 MM"', help='Way of a turn, which converts rpm, rad/s, deg and N m.')
-@click.option('--rated', metavar='"2.4 N M"', help='Rated torque or force, which converts a force in %.')
-@click.option('--stiffness', metavar='"600 N/MM"', help='The spring by whose force the slider is pulled: x = s - F/k.')
-@click.option('--feed', metavar='"2 MM/S"', help='Velocity of the driven end of that spring.')
-@click.option('--from', 'begin', type=float, default=-math.inf, metavar='S', help='Time of the file to begin at.')
-@click.option('--to', 'end', type=float, default=math.inf, metavar='S', help='Time of the file to end at.')
-@click.option('--every', type=click.IntRange(1), default=1, metavar='N', help='Take each Nth row.')
-@click.option('--skip', type=click.IntRange(0), default=0, metavar='LINES', help='Pass over the first lines.')
-@click.option('--drop-bad-rows', 'drops_bad', is_flag=True, help='Leave out rows that lack a number or go back.')
-@click.option('--stick-velocity', type=float, metavar='V',
-              help='A slip is faster than this, m/s, and at its peak than 5 times it [default: 5 % of the highest].')
-@click.option('--meant', multiple=True, metavar='QUANTITY', help='It is meant as it was read, however fast or far.')
-@click.option('--out', type=FOLDER, required=True, metavar='RUN_FOLDER', help='New folder of the run.')
+              help='Units, with an optional factor: position="-0.05 um" [default: from the headings, or SI].')
+@click.option('--lead', metavar='LENGTH', help='Travel per turn, such as "10 mm", to convert rpm, rad/s, deg and N m.')
+@click.option('--rated', metavar='FORCE', help='Rated force or torque, such as "2.4 N m", to convert %.')
+@click.option('--stiffness', metavar='STIFFNESS',
+              help='Stiffness k of the spring that pulls the slider, such as "600 N/mm"; gives x = s - F/k.')
+@click.option('--feed', metavar='VELOCITY', help='Velocity of the driven end of that spring, such as "2 mm/s".')
+@click.option('--from', 'begin', type=float, default=-math.inf, metavar='SECONDS',
+              help='First time to read.')
+@click.option('--to', 'end', type=float, default=math.inf, metavar='SECONDS', help='Last time to read.')
+@click.option('--every', type=click.IntRange(1), default=1, metavar='N', help='Read every Nth row.')
+@click.option('--skip', type=click.IntRange(0), default=0, metavar='LINES', help='Skip the first lines.')
+@click.option('--drop-bad-rows', 'drops_bad', is_flag=True, help='Drop rows with missing numbers or decreasing times.')
+@click.option('--stick-velocity', type=float, metavar='SPEED',
+              help='Speed of a slip in m/s; its peak must exceed 5 times that [default: 5 % of the highest].')
+@allow_implausible('Accept an implausible speed or travel of this quantity.', metavar='QUANTITY')
+@click.option('--out', type=FOLDER, required=True, metavar='FOLDER', help='New folder for the run.')
 def import_(data: str, columns: tuple[str, ...], unit: tuple[str, ...], lead: str | None, rated: str | None,
             stiffness: str | None, feed: str | None, stick_velocity: float | None, meant: tuple[str, ...], out: str,
             **rows: Any) -> None:
-    """Make a run folder of what was measured, for identify, compare, plot, export and check.
+    """Import a measurement as a run folder for identify, compare, plot, export and check.
 
-    There is nothing else in it.  The quantities are time, position, velocity and acceleration of the slider,
-    drive_position, drive_velocity, drive_force, friction_force, external_force.  Modes and cycles are derived from the
-    speed (docs/runs.md).
+    The quantities are time, position, velocity and acceleration of the slider, drive_position, drive_velocity,
+    drive_force, friction_force and external_force.  Modes and cycles are derived from the speed (docs/runs.md).
     """
     from ..core.errors import InputError
     from ..figures.cycles import headline

@@ -39,12 +39,12 @@ _INTERRUPTED = 130
 
 @click.group(cls=LazyGroup, sections=_SECTIONS,
              context_settings={'help_option_names': ['-h', '--help'], 'max_content_width': 100},
-             epilog='For a start: stickslip simulate paper_fig8 --duration 10 --plot run.png',
+             epilog='Start with: stickslip simulate paper_fig8 --duration 10 --plot run.png',
              invoke_without_command=True, subcommand_metavar='COMMAND [ARGS]...')
 @click.version_option(__version__, message='stickslip %(version)s')
 @click.pass_context
 def stickslip(context: click.Context) -> None:
-    """Stick-slip motion of a feed axis, simulated exactly."""
+    """Simulate the stick-slip motion of a feed axis exactly."""
     if context.invoked_subcommand is None:   # the behaviour of click depends on its version
         click.echo(context.get_help(), err=True)
         context.exit(2)

@@ -14,16 +14,16 @@ _MOST_PICKS = 6
 _SHOWN = 'amplitude'
 
 
-@verb('map', short_help='Draw a sweep: a map, or a bifurcation diagram.')
+@verb('map', short_help='Plot a sweep as a map or a bifurcation diagram.')
 @click.argument('folder', metavar='FOLDER', shell_complete=completion.complete_folders)
 @click.option('--out', 'pictures', multiple=True, required=True, type=PICTURE,
-              metavar='FILE.png|pdf|svg', help='Write the picture; may be given again.')
+              metavar='FILE.png|pdf|svg', help='Picture to write; repeatable.')
 @click.option('--show', 'shown', default=_SHOWN, metavar='FIGURE',
-              help=f'What a map has in colours [default: {_SHOWN}].')
+              help=f'Figure to colour a map by [default: {_SHOWN}].')
 @click.option('--pick', 'picks', multiple=True, metavar='A,B',
-              help='Draw the phase plane at these values of the two parameters, too.')
+              help='Also plot the phase plane at these values of the two parameters.')
 def map_(folder: str, pictures: tuple[str, ...], shown: str, picks: tuple[str, ...]) -> None:
-    """Draw the sweep in FOLDER: a map of two parameters, or a bifurcation diagram of one."""
+    """Plot the sweep in FOLDER as a map of two parameters or a bifurcation diagram of one."""
     from ..compare.pictures import picked
     from ..core.errors import InputError
     from ..study.diagrams import check_drawable, draw_bifurcation, draw_map
@@ -36,7 +36,7 @@ def map_(folder: str, pictures: tuple[str, ...], shown: str, picks: tuple[str, .
     study = study_of(swept.described())
     check_drawable(study, shown)
     if picks and len(study.names) != 2:
-        raise click.UsageError('--pick is for a map of two parameters.')
+        raise click.UsageError('--pick needs a map of two parameters.')
     if len(picks) > _MOST_PICKS:
         raise InputError('--pick', f'{len(picks)} times', f'given at most {_MOST_PICKS} times', 'pick fewer points')
     if not swept.is_complete:

@@ -8,24 +8,24 @@ from .arguments import SceneChanges, check_sources, run_of, scene_changes, scene
 from .files import PICTURE, check_picture, progress_bar, say_written, whole
 
 
-@verb(short_help='Draw any run, or several over each other.')
+@verb(short_help='Plot one run, or several on top of each other.')
 @sources_argument
-@click.option('--window', metavar='A:B', help='Show this part, of one run beside the whole, s; A may be first_command, '
-                                              '+B counts from A [default: what was commanded, last cycles of a long '
-                                              'run; of several where the setpoint moves].')
-@click.option('--limits', metavar='FILE.yaml', help='Draw limits, too, and the error to their reference.')
-@click.option('--out', type=PICTURE, metavar='FILE.png|pdf|svg', help='Write the picture there; the ending decides the '
-                                                                  'format [default: NAME.png, of several runs.png].')
+@click.option('--window', metavar='A:B', help='Time span to show, in s; A may be first_command, and +B counts from A '
+                                              '[default: the commanded part or the last cycles; of several runs, '
+                                              'where the setpoint moves].')
+@click.option('--limits', metavar='FILE.yaml', help='Also plot limits and the error to their reference.')
+@click.option('--out', type=PICTURE, metavar='FILE.png|pdf|svg', help='Picture to write; the ending selects the format '
+                                                                  '[default: NAME.png, of several runs.png].')
 @scene_duration
 @scene_changes('Change a parameter of a scene.')
 def plot(sources: tuple[str, ...], window: str | None, limits: str | None, out: str | None, duration: float | None,
          changes: SceneChanges) -> None:
-    """Draw RUN_OR_SCENE - a run folder, or a scene to simulate - over time.
+    """Plot RUN_OR_SCENE (a run folder, or a scene to simulate) over time.
 
-    Positions of slider and drive, stretch of the spring between them, velocity and command, forces, modes; faults and
-    commands that were refused or limited; of a node's run late steps, and gaps between commands.
+    The picture shows the positions of slider and drive, the spring stretch, velocity and command, forces and modes,
+    with faults and refused or limited commands; for a run of the node also late steps and gaps between commands.
 
-    Of several, or with --limits, speed, error and drive force, one over the other.
+    Several runs, or --limits, are compared by speed, error and drive force.
     """
     from ..runs.report import Window, file_stem
 

@@ -11,17 +11,17 @@ from .arguments import SceneChanges, recorded_run, scene_changes, verb
 from .files import FOLDER, new_folder, progress_bar, say_written, show
 
 
-@verb(short_help='Hold a scene against measured runs it has not seen.')
+@verb(short_help='Test a scene on measured runs it has not seen.')
 @click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
 @click.argument('runs', nargs=-1, required=True, metavar='RUN...', shell_complete=completion.complete_folders)
-@click.option('--out', type=FOLDER, metavar='FOLDER', help='New folder for the report and the pictures.')
+@click.option('--out', type=FOLDER, metavar='FOLDER', help='New folder for the report and pictures.')
 @scene_changes('Change a parameter of the scene.')
 def predict(scene: str, runs: tuple[str, ...], out: str | None, changes: SceneChanges) -> None:
-    """Drive SCENE by what each RUN measured of its drive and force, and say how far it is off.
+    """Drive SCENE with the measured drive and force of each RUN, and report the prediction error.
 
-    Offset and delay of the sensors and the start of the run are found, the physics stays: root mean square error, fit
-    in % (100 (1 − |error| / |measured − mean|)), largest error.  Beside an identified.yaml its report.json says what
-    is known of the sensors.
+    Sensor offsets, delays and the initial state are fitted; the physics is not.  The report lists RMS error, fit in %
+    (100 (1 − |error| / |measured − mean|)) and largest error.  For an identified.yaml, the sensors are known from the
+    report.json in its folder.
     """
     from ..identification.prediction import known_sensors, predicted
     from ..identification.prediction_report import prediction_parts, write_predictions

@@ -7,7 +7,7 @@ import click
 
 @click.command()
 def scenes() -> None:
-    """List the shipped scenes with a line each."""
+    """List the shipped scenes, one line each."""
     from ..inputs import load_scene
     from ..scene import scene_names
 

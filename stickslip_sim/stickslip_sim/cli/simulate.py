@@ -10,28 +10,29 @@ from .arguments import SceneChanges, scene_argument, scene_changes, verb
 from .files import FOLDER, PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_text
 
 
-@verb(short_help='Simulate a scene: figures, tables, picture, bag.')
+@verb(short_help='Simulate a scene and write tables, a picture or a bag.')
 @scene_argument
-@click.option('--duration', type=float, required=True, metavar='S', help='Simulated time, s.')
-@click.option('--events', type=TEXT, metavar='FILE.csv', help='Write the events ("-": to standard output).')
-@click.option('--knots', is_flag=True, help='List the crossings of breakpoints of friction tables among the events.')
-@click.option('--samples', type=TEXT, metavar='FILE.csv', help='Write the state over time ("-": to standard output).')
-@click.option('--sample-period', type=float, metavar='S', help="Time between samples [default: a step of the scene].")
-@click.option('--bag', type=FOLDER, metavar='FOLDER', help='Record the run as a ROS 2 bag, one state a step.')
+@click.option('--duration', type=float, required=True, metavar='SECONDS', help='Simulated time.')
+@click.option('--events', type=TEXT, metavar='FILE.csv', help='Write the events ("-" for standard output).')
+@click.option('--knots', is_flag=True, help='Also list where the speed crosses breakpoints of friction tables.')
+@click.option('--samples', type=TEXT, metavar='FILE.csv', help='Write the state over time ("-" for standard output).')
+@click.option('--sample-period', type=float, metavar='SECONDS',
+              help='Time between samples [default: a step of the scene].')
+@click.option('--bag', type=FOLDER, metavar='FOLDER', help='Record the run as a ROS 2 bag, one state per step.')
 @click.option('--receipt', type=TEXT, metavar='FILE.json', help='Write versions, figures, energy, error and cost.')
 @click.option('--plot', type=PICTURE, metavar='FILE.png',
-              help='Draw the run, as `stickslip plot` does (.png, .pdf or .svg).')
+              help='Plot the run, like `stickslip plot` (.png, .pdf or .svg).')
 @scene_changes('Change a parameter of the scene.')
 def simulate(scene: str, changes: SceneChanges, duration: float, events: str | None, knots: bool, samples: str | None,
              sample_period: float | None, bag: str | None, receipt: str | None, plot: str | None) -> None:
-    """Simulate SCENE, the name of a shipped scene or a file.
+    """Simulate SCENE, a shipped scene or a file, and print a summary.
 
-    A summary is printed, unless something else is written to standard output ("-").
+    The summary is omitted if something else is written to standard output ("-").
     """
     if knots and events is None:
-        raise click.UsageError('--knots chooses what --events lists: give --events FILE.csv too.')
+        raise click.UsageError('--knots needs --events FILE.csv.')
     if sample_period is not None and samples is None:
-        raise click.UsageError('--sample-period is of no use alone: give --samples FILE.csv too.')
+        raise click.UsageError('--sample-period needs --samples FILE.csv.')
     from ..report.values import json_text
     from ..runs import simulate as simulate_sampled
     from ..runs import simulate_events

@@ -10,18 +10,18 @@ from .arguments import Members, SceneChanges, command_line, scene_argument, stud
 from .files import progress_bar, say_written, show
 
 
-@verb(short_help='Run a scene at many values of its parameters.')
+@verb(short_help='Run a scene over ranges of its parameters.')
 @scene_argument
 @click.option('--over', 'ranges', multiple=True, required=True, metavar='A.B=LOW:HIGH:N[:log]',
               shell_complete=completion.complete_parameters,
-              help='Vary a parameter, or an element of a list: A.B[1]. Given again: every combination.')
-@click.option('--sobol', type=int, metavar='N', help='Draw N points (Sobol) instead; then --over A.B=LOW:HIGH[:log].')
+              help='Vary a parameter, or an element of a list: A.B[1]. Repeatable: runs every combination.')
+@click.option('--sobol', type=int, metavar='N', help='Draw N Sobol points instead, with --over A.B=LOW:HIGH[:log].')
 @study_options
 def sweep(scene: str, ranges: tuple[str, ...], sobol: int | None, out: str, duration: float | None,
           members: Members, resume: bool, changes: SceneChanges) -> None:
-    """Run SCENE at many values of its parameters; write motion, amplitude, period and more of each.
+    """Run SCENE over ranges of its parameters and write the motion, amplitude, period and more of each run.
 
-    Ctrl-C keeps the finished points.  `stickslip map FOLDER` draws it.
+    Ctrl-C keeps the finished points.  Plot the result with `stickslip map FOLDER`.
     """
     from ..study import EvenGrid, Sobol, Study, variation
     from ..study.folder import Folder

@@ -8,20 +8,20 @@ from .arguments import SceneChanges, controller_options, scene_changes, verb
 from .files import PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_json
 
 
-@verb(short_help='Margins of your controller, and why its loop swings.')
-@controller_options('Make the class NAME with this argument.')
-@click.option('--feed', type=float, metavar='V', help="Speed of the slip, m/s [default: the scene's largest].")
-@click.option('--duration', type=float, default=20.0, show_default=True, metavar='S',
-              help='Of the closed loop that is simulated: half of it at the feed, half of it holding, s.')
-@click.option('--plot', type=PICTURE, metavar='FILE.png', help='Draw Bode diagrams, step response and swing.')
+@verb(short_help='Show the stability margins of your controller.')
+@controller_options('Argument of the class NAME.')
+@click.option('--feed', type=float, metavar='SPEED', help="Slip speed in m/s [default: the scene's largest].")
+@click.option('--duration', type=float, default=20.0, show_default=True, metavar='SECONDS',
+              help='Simulated time of the closed loop, half at the feed and half holding.')
+@click.option('--plot', type=PICTURE, metavar='FILE.png', help='Plot Bode diagrams, step response and oscillation.')
 @click.option('--json', 'json_file', type=TEXT, metavar='FILE.json',
-              help='Write all numbers ("-": to standard output).')
+              help='Write all numbers ("-" for standard output).')
 @scene_changes('Change a parameter of the scene.')
 def tune(controller: str, scene: str, changes: SceneChanges, feed: float | None, rate: float | None,
          gains: tuple[str, ...], duration: float, plot: str | None, json_file: str | None) -> None:
-    """Say how far a controller is from swinging, and why it swings: NAME in FILE.py, a class or a function.
+    """Show the stability margins of NAME in FILE.py, a controller class or function, and why its loop oscillates.
 
-    It is probed with small signals about stick and about steady slip (docs/closed_loop.md).
+    The controller is probed with small signals around stick and steady slip (docs/closed_loop.md).
     """
     from ..closed_loop.report import tuning_report, tuning_values
     from ..closed_loop.tuning import tune as tuned

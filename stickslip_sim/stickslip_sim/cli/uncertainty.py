@@ -13,22 +13,22 @@ from .files import PICTURE, check_new_folder, new_folder, progress_bar, say_writ
 _RESULT = 'uncertainty.json'
 
 
-@verb(short_help='Run a scene with parameters that are known only roughly.')
+@verb(short_help='Propagate uncertain parameters through a scene.')
 @scene_argument
-@click.option('--with', 'file', required=True, metavar='FILE.yaml', help='The distributions of its parameters.')
-@click.option('--of', 'critical', metavar='A.B', help='Find how the critical value of this parameter spreads.')
-@click.option('--between', metavar='LOW:HIGH', help='With --of: where to look [default: 1/100 to 100 times its value].')
+@click.option('--with', 'file', required=True, metavar='FILE.yaml', help='Distributions of the parameters.')
+@click.option('--of', 'critical', metavar='A.B', help='Find the spread of the critical value of this parameter.')
+@click.option('--between', metavar='LOW:HIGH', help='With --of: search range [default: 1/100 to 100 times its value].')
 @click.option('--samples', type=int, default=1024, show_default=True, metavar='N',
-              help='A power of two; N (parameters + 2) points are run, 2 N of correlated ones.')
+              help='A power of two; runs N (parameters + 2) points, or 2 N if they are correlated.')
 @click.option('--plot', type=PICTURE, metavar='FILE.png',
-              help='Draw the spread of the figures and the indices (.png, .pdf or .svg).')
+              help='Plot the spread of the figures and the indices (.png, .pdf or .svg).')
 @study_options
 def uncertainty(scene: str, file: str, critical: str | None, between: str | None, samples: int, plot: str | None,
                 out: str, duration: float | None, members: Members, resume: bool, changes: SceneChanges) -> None:
-    """Run SCENE with parameters drawn from distributions: percentiles, and which parameter decides.
+    """Run SCENE with parameters drawn from distributions; report percentiles and sensitivity indices.
 
-    FOLDER gets uncertainty.json beside the table of all points.  Ctrl-C keeps the finished points.  With --of it is the
-    critical value of a parameter that spreads, as of the feed; then it is done in one go.
+    FOLDER receives uncertainty.json and a table of all points.  Ctrl-C keeps the finished points.  With --of, the
+    result is the spread of a critical value, such as the critical feed; such a study cannot be resumed.
     """
     _check(critical, between, duration, resume)
     from ..scene.load import named
@@ -75,6 +75,6 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
 def _check(critical: str | None, between: str | None, duration: float | None, resume: bool) -> None:
     """Raise UsageError on options that do not go together."""
     if critical is None and between is not None:
-        raise click.UsageError('--between is where to look for a critical value: give --of A.B too.')
+        raise click.UsageError('--between needs --of A.B.')
     if critical is not None and (duration is not None or resume):
-        raise click.UsageError('--of runs each point until its motion settles, in one go: no --duration, no --resume.')
+        raise click.UsageError('--of does not take --duration or --resume: each point runs until its motion settles.')

@@ -8,19 +8,19 @@ from .arguments import SceneChanges, recorded_run, run_argument, scene_changes, 
 from .files import FOLDER, new_folder, progress_bar, say_written, show
 
 
-@verb(short_help='Run a recorded run again; with --set, what would have been.')
+@verb(short_help='Repeat a recorded run bit by bit, or ask "what if".')
 @run_argument
 @click.option('--out', type=FOLDER, metavar='FOLDER',
-              help='With --set: new folder for figures, picture and scene of what if.')
-@scene_changes('What if this parameter had been another?')
+              help='With --set: new folder for the figures, picture and scene.')
+@scene_changes('Repeat with another value of this parameter.')
 def verify(run: str, changes: SceneChanges, out: str | None) -> None:
-    """Simulate the recorded RUN again from its scene and its orders, without ROS, and compare every bit.
+    """Simulate the recorded RUN again from its scene and commands, without ROS, and compare every bit.
 
-    "identical", or exit code 3 and the first difference.  With --set, the same orders under another scene are set
-    beside it.
+    Prints "identical", or the first difference with exit code 3.  With --set, the same commands drive a changed scene,
+    and both runs are compared.
     """
     if out is not None and not changes.overrides:
-        raise click.UsageError('--out is of no use alone: give --set A.B=VALUE too.')
+        raise click.UsageError('--out needs --set A.B=VALUE.')
     from ..check import verification
     from ..check.remake import doubts_about, feedback_note, other_run, other_scene
     from ..check.report import beside_table, verdict_report, write_what_if

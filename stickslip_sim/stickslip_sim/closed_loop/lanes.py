@@ -49,7 +49,7 @@ def check_lanes(scene: Scene) -> None:
             ('force.course', 'one that varies', not force.sinusoids and len(force.starts) == 1
              and force.rates == (0.0,) and force.period == math.inf)):
         if not is_fine:
-            raise InputError(name, found, 'left out for a vectorized controller: exact solver, constant force, no '
+            raise InputError(name, found, 'omitted for a vectorized controller: exact solver, constant force, no '
                              'faults, no time-out, no limit of acceleration', 'leave vectorized out')
 
 

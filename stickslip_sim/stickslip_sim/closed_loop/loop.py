@@ -196,7 +196,7 @@ def _arrays(given: object) -> tuple[Numbers, Numbers]:
 def _interpolated(times: Numbers, positions: Numbers, wanted: Numbers) -> Numbers:
     for row in np.flatnonzero(np.diff(times) <= 0.0)[:1].tolist():
         raise InputError(f'setpoint times[{row + 1}]', float(times[row + 1]), f'after the one before it, '
-                         f'{float(times[row])!r} s', 'sort the rows by time, and leave out what is there twice')
+                         f'{float(times[row])!r} s', 'sort the rows by time and drop duplicates')
     begin, end = float(times[0]), float(times[-1])
     if begin > 0.0 or end < wanted[-1]:
         raise InputError('setpoint', f'{begin:g} to {end:g} s', f'from 0 to the end of the run, {wanted[-1]:g} s',

@@ -223,7 +223,7 @@ def loop_study(controller: Any, scene: SceneOrName, duration: float, over: Mappi
     if samples is None and uncertain:
         raise InputError('samples', None, 'given with distributions', 'say how many points to draw: 256')
     if samples is not None and (isinstance(samples, bool) or not isinstance(samples, int) or not 1 <= samples <= 2**24):
-        raise InputError('samples', samples, '1 to 16777216', 'best a power of two')
+        raise InputError('samples', samples, '1 to 16777216', 'preferably a power of two')
     if not variations and not laws:
         raise InputError('over', None, 'a range of at least one parameter or gain',
                          'for example friction.scale=0.8:1.2')

@@ -105,7 +105,7 @@ def tune(controller: Callable[[float, Measurement], Any], scene: SceneOrName, fe
                          'give the speed of the setpoint')
     if duration * scene.time.rate < _FEWEST:
         raise InputError('duration', duration, f'at least {_FEWEST} steps ({_FEWEST / scene.time.rate:g} s)',
-                         'simulate many periods of the swing')
+                         'simulate many periods of the oscillation')
     check_delays(scene)
     loops = {'stick': _loop(controller, scene, None, every), 'slip': _loop(controller, scene, feed, every)}
 

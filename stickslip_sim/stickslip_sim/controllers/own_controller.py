@@ -52,7 +52,7 @@ class OwnController:
     def __init__(self, controller: object, limits: tuple[float, float]) -> None:
         if isinstance(controller, type) or not callable(controller):
             kind = f'the class {controller.__name__}' if isinstance(controller, type) else type(controller).__name__
-            raise InputError('controller', kind, 'a function or an object that is called as controller(t, measured)',
+            raise InputError('controller', kind, 'callable as controller(t, measured)',
                              'give an instance: MyController()')
         self.name = str(getattr(controller, '__name__', type(controller).__name__))
         self.ask: Callable[[float, Measurement], Any] = controller
@@ -130,7 +130,7 @@ def load_controller(place: str, arguments: Mapping[str, object] | None = None) -
     if not isinstance(found, type):
         if given:
             raise InputError(next(iter(given)), next(iter(given.values())),
-                             f'left out: {place.rpartition(":")[2]} is no class', 'only a class takes arguments')
+                             f'omitted: {place.rpartition(":")[2]} is not a class', 'only a class takes arguments')
         return found
     return made_controller(found, given)
 
@@ -139,7 +139,7 @@ def named_controller(place: str) -> Any:
     """Return what NAME is in FILE.py, as it stands there; raises InputError, also where it cannot be imported."""
     file, colon, name = place.rpartition(':')
     if not colon or not name or not file:
-        raise InputError('controller', place, _FORM, 'name the class or function of the controller behind a colon')
+        raise InputError('controller', place, _FORM, 'add a colon and the name of the class or function')
     return _named(place, _imported(place, Path(file)), name)
 
 
@@ -158,7 +158,7 @@ def made_controller(found: Callable[..., Any], given: Mapping[str, object]) -> A
     try:
         return found(**given)
     except Exception as error:
-        raise InputError('controller', made, 'a class that can be made so', raised(error)) from None
+        raise InputError('controller', made, 'a class that can be instantiated', raised(error)) from None
 
 
 def parse_gain(text: str) -> tuple[str, object]:
@@ -175,7 +175,7 @@ def parse_gain(text: str) -> tuple[str, object]:
 def _imported(place: str, file: Path) -> Any:
     if not file.is_file():
         fix = suggestion(str(file), paths_beside(file, ['.py']), 'check the path')
-        raise InputError('controller', place, f'{_FORM}, a file that is there', fix)
+        raise InputError('controller', place, f'{_FORM}, an existing file', fix)
     spec = importlib.util.spec_from_file_location(file.stem, file.resolve())
     if spec is None:
         raise InputError('controller', place, _FORM, 'name a file that ends in .py')

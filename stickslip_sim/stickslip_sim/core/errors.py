@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 LINE_LIMIT = 2000   # characters
+ALLOW = '--allow-implausible'    # the option that a refusal of an implausible number names; in 1.0 --meant
 
 
 class StickslipError(Exception):

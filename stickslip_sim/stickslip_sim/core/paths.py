@@ -42,5 +42,5 @@ def check_picture_name(name: str, path: Path | str) -> None:
     """Raise InputError unless the ending of a path is that of a picture; `name` is that of the option."""
     if Path(path).suffix.lower() not in PICTURE_FORMATS:
         *others, last = PICTURE_FORMATS
-        raise InputError(name, str(path), f'a file ending in {", ".join(others)} or {last}', 'the ending decides the '
-                         'format: name it so')
+        raise InputError(name, str(path), f'a file ending in {", ".join(others)} or {last}', 'the ending selects '
+                         'the format')

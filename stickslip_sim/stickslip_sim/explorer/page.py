@@ -39,7 +39,7 @@ def page_of(scene: Scene, beside: Mapping[str, list[float]] | None = None) -> st
                          'build the package with a C compiler, and leave STICKSLIP_COMPILED=0 out')
     for name, value in scene.values.items():
         if _is_beyond(name, value):
-            raise InputError(name, value, 'left out of a page', 'docs/explore.md says what a page can run')
+            raise InputError(name, value, 'omitted in a page', 'docs/explore.md says what a page can run')
     data = json.dumps({
         'version': __version__, 'scene': scene_text(scene.values), 'beside': beside,
         'shipped': {one: _shipped(one) for one in scene_names()}, 'figures': asdict(AxisFigures()),

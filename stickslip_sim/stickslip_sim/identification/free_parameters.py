@@ -82,7 +82,7 @@ def free_parameters(scene: Scene, free: str | Path | Mapping[str, object]) -> tu
     else:
         found = load_uncertain(free, _parameter, _MOST)
     if found.correlations is not None:
-        raise InputError('correlations', 'given', 'left out here: how parameters go together is what is sought',
+        raise InputError('correlations', 'given', 'omitted here: the fit finds the correlations',
                          'drop the section')
     return tuple(_free(scene, distribution) for distribution in found.distributions)
 

@@ -232,7 +232,7 @@ def check_data(parameters: Sequence[FreeParameter], measurement: SensorReadings,
         way = float(np.ptp(position.values))
         if not gone / _FAR < way < gone * _FAR:
             raise InputError('RUN', f'a way of {way:g} m', f'about as long as that of the drive, {gone:g} m',
-                             'look at the unit of the position, and at the drive of the scene')
+                             'check the unit of the position and the drive of the scene')
     force = measurement.channel('drive_force')
     scaled = any(one.name == 'sensor.drive_force.scale' for one in parameters)
     friction = scene.axis.friction
@@ -241,7 +241,7 @@ def check_data(parameters: Sequence[FreeParameter], measurement: SensorReadings,
         size = float(np.abs(force.values).max())
         if not most / _FAR < size < most * _FAR:
             raise InputError('RUN', f'a drive force up to {size:g} N', 'about as large as friction in the scene, '
-                             f'{most:g} N', 'look at its unit, or free sensor.drive_force.scale')
+                             f'{most:g} N', 'check its unit, or free sensor.drive_force.scale')
 
 
 Given = Run | str | os.PathLike[str]
@@ -314,7 +314,7 @@ def _check_several(runs: Sequence[Run], parameters: Sequence[FreeParameter], eac
         if name not in names:
             raise InputError('each', name, f'a free parameter: {", ".join(names)}', 'name one, or leave it out')
     if each and len(runs) == 1:
-        raise InputError('each', each[0], 'left out with one run', 'give several runs, or drop it')
+        raise InputError('each', each[0], 'omitted with one run', 'give several runs, or drop it')
     if not runs or (laws and len(runs) > 1):
         raise InputError('RUN', len(runs), 'one run where other laws are fitted, else one or more', 'give one run')
 

@@ -155,7 +155,7 @@ class WorkFolder:
             np.savez(temporary, **arrays)   # type: ignore[arg-type]
             temporary.replace(self.path / f'{key}.npz')
         except OSError as error:
-            raise InputError('--out', str(self.path), 'a place that can be written',
+            raise InputError('--out', str(self.path), 'a writable place',
                              f'{error.strerror or error}; {KEPT}') from None
 
     @property
@@ -187,5 +187,5 @@ class WorkFolder:
                              f'{_SIDECAR} in it', 'a finished one has its results; else leave --resume out')
         for name, value in self._described.items():
             if found.get(name) != value:
-                raise InputError('--resume', str(self.path), f'the folder of this very identification; its {name} is '
+                raise InputError('--resume', str(self.path), f'the folder of this identification; its {name} is '
                                  'another', 'give the same run, scene and file, or another folder')

@@ -94,7 +94,7 @@ def predicted(scene: Scene, source: str, known: KnownSensors, run: Run,
     best = _nearest(problem)
     fitted = problem.fitted(best.point, problem.stretches(len(problem.motions) + 1))
     if fitted is None:
-        raise SolverError(f'{scene.name} has no motion along {run.name}: look at the units of its inputs')
+        raise SolverError(f'{scene.name} has no motion along {run.name}: check the units of its inputs')
     measurement = problem.measurement
     channels = tuple(ChannelFit(one.name, one.unit, measurement.times + measurement.shift, one.values, column,
                                 one.resolution) for one, column in zip(measurement.channels, fitted, strict=True))

@@ -349,12 +349,12 @@ def _times(times: Numbers, are_pushed: bool) -> tuple[Numbers, float, float]:
     Motion under nothing but a measured force starts where its readings do.
     """
     if len(times) < _FEWEST:
-        raise InputError('RUN', f'{len(times)} samples', f'{_FEWEST} samples or more', 'measure longer or more often')
+        raise InputError('RUN', f'{len(times)} samples', f'{_FEWEST} samples or more', 'measure longer or faster')
     steps = np.diff(times)
     period = float(np.median(steps))
     if not 1.0 / _RATES[1] <= period <= 1.0 / _RATES[0]:
         raise InputError('RUN', f'{1.0 / period:g} samples/s', '{:g} to {:g} samples/s'.format(*_RATES),
-                         'look at the unit of its time')
+                         'check the unit of its time')
     gap = int(steps.argmax())
     if steps[gap] > max(_LONGEST_GAP * (times[-1] - times[0] - steps[gap]), 10.0 * period):
         raise InputError('RUN', f'a jump of its time from {times[gap]:g} to {times[gap + 1]:g} s', 'without a gap that '
@@ -380,7 +380,7 @@ def _check_motion(channels: tuple[Channel, ...]) -> None:
     span = float(np.ptp(moving.values))
     if span <= max(6.0 * moving.resolution, 3.0 * moving.quantum):
         raise InputError('RUN', f'a {moving.name} that changes by {span:g} {moving.unit}', 'one in which the slider '
-                         'moves', 'look at its column and unit, or measure with a larger feed')
+                         'moves', 'check its column and unit, or measure at a higher feed')
 
 
 def drives_directly(scene: Scene) -> bool:

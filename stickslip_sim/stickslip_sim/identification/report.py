@@ -24,16 +24,15 @@ from .identified_scene import OF_SENSORS, interval_words, number_words
 from .prediction_report import CAPTION, prediction_parts, prediction_values
 
 _CAPTIONS = {
-    'fit': 'The fitted motion (thin) over the measured one (thick, grey): the whole run, and two cycles of it '
-           '(shaded).  Where single slips were fitted, each begins at a measured arrest, marked below: no prediction '
-           'of more than that slip.  The free run (dashed) is what the model does by itself from the start on.',
-    'residuals': 'What is left, in standard deviations of the sensor: over time, and over the phase of the cycle, from '
-                 'break-away to break-away, where a pattern shows what the model lacks.  Red: a test rejects the '
-                 'model there.',
-    'friction': 'Friction as identified, with the band that its numbers leave (95 %), and straight from the '
-                'measurement: force on the slider less its inertia, within slips.  (a) Over speed, (b) over the time '
-                'at rest; friction that depends on the direction has a row for each.',
-    'correlations': 'How the errors of the numbers go together: near 1 or −1 the run shows only their combination.',
+    'fit': 'Fitted motion (thin) over the measured one (thick, grey): the whole run, and two cycles of it (shaded).  '
+           'If single slips were fitted, each starts at a measured arrest, marked below, and predicts only that '
+           'slip.  The free run (dashed) is the model on its own from the start.',
+    'residuals': 'Residuals in standard deviations of the sensor, over time and over the phase of the cycle between '
+                 'break-aways.  A pattern shows a deficiency of the model.  Red: a test rejects the model there.',
+    'friction': 'Identified friction with its 95 % band, and the friction measured within slips: force on the slider '
+                'minus inertia, (a) over speed, (b) over rest time.  Friction that depends on the direction has one '
+                'row per direction.',
+    'correlations': 'Correlations of the errors: near 1 or −1 the run determines only a combination of two numbers.',
 }
 _SHOWN = 3   # misfits, above the fold
 _ORDER = ('fit', 'residuals', 'friction')
@@ -152,7 +151,7 @@ def _estimate_table(estimates: Sequence[Estimate]) -> str:
     rows = [[one.name, *_ends(one), f'{100.0 * (one.value / one.start - 1.0):+.2f} %' if one.start else '–',
              interval_words(one), 'profile' if one.profile else 'covariance', one.kind, one.derivation]
             for one in estimates]
-    return html_table('Parameters: where the search began, what was found, and the 95 % interval', [
+    return html_table('Parameters: initial value, result and 95 % interval', [
         '', 'start', 'value', 'change', 'interval', 'interval by', 'kind', 'from'], rows)
 
 
@@ -164,7 +163,7 @@ def _alone(found: Identification) -> Iterator[str]:
         rows = [[name, *(f'{number_words(own[name].value, own[name].unit)} ({interval_words(own[name])})'
                          if name in own else '–' for own in by_name)] for name in names]
         rows.append(['fits alone', *('yes' if run.fits else 'no' for run in found.alone)])
-        yield html_table('What each run says by itself', ['', *(run.run for run in found.alone)], rows)
+        yield html_table('Each run on its own', ['', *(run.run for run in found.alone)], rows)
         yield from (f'<p class="fails">{escape(one)}</p>' for one in found.disagreements)
 
 
@@ -177,7 +176,7 @@ def _open(found: Identification) -> Iterator[str]:
 def _channel_table(found: Identification) -> str:
     rows = [[one.name, str(len(one.times)), *(quantity(size, one.unit) for size in (one.resolution, *_left(one)))]
             for one in found.channels]
-    return html_table('What is left of each channel', ['', 'readings', 'σ of the sensor', 'rms residual', 'largest'],
+    return html_table('Residuals of each channel', ['', 'readings', 'σ of the sensor', 'rms residual', 'largest'],
                       rows)
 
 
@@ -193,8 +192,8 @@ def _slip_table(found: Identification) -> str:
     if not rows:
         return '<p>No slip was measured.</p>'
     missing = sum(not (math.isfinite(slip.time) and math.isfinite(slip.fitted_time)) for slip in found.slips)
-    note = f'<p class="note">{missing} of {len(found.slips)} slips are in one of the two motions alone.</p>'
-    return html_table('Slips: measured beside fitted', ['', 'pairs', 'measured, median', 'apart, median', 'at worst'],
+    note = f'<p class="note">{missing} of {len(found.slips)} slips occur in only one of the two motions.</p>'
+    return html_table('Slips, measured and fitted', ['', 'pairs', 'measured, median', 'difference, median', 'largest'],
                       rows) + note * bool(missing)
 
 
@@ -299,7 +298,7 @@ def sensor_errors(folder: Path) -> dict[str, float]:
         estimates = json.loads(path.read_text(encoding='utf-8'))['estimates']
         return {one['name']: float(one['value']) for one in estimates if one['name'].startswith(OF_SENSORS)}
     except (ValueError, LookupError, TypeError, AttributeError):
-        raise InputError('report', str(path), 'as identify wrote it', 'identify again, or take it away') from None
+        raise InputError('report', str(path), 'as identify wrote it', 'run identify again, or remove it') from None
 
 
 def _estimate(one: Estimate) -> dict[str, Any]:

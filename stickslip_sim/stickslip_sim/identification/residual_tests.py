@@ -101,8 +101,8 @@ def _correlation(channel: Channel, residuals: Numbers, times: Numbers) -> Misfit
     if share <= limit or together**0.5 <= _MATTERS * float(np.ptp(channel.values)):
         return None
     return Misfit(channel.name, 'correlation of neighbours', share, limit, float(times[0]), float(times[-1]),
-                  f'of the residuals of {channel.name} {quantity(together**0.5, channel.unit, 3)} (rms) go together '
-                  f'from sample to sample, {share**0.5:.2g} times the noise: they are no noise')
+                  f'the residuals of {channel.name} are autocorrelated, so they are not sensor noise: '
+                  f'{quantity(together**0.5, channel.unit, 3)} (rms), {share**0.5:.2g} times the noise')
 
 
 def _by_runs(residuals: Numbers, weights: Numbers) -> Numbers:

@@ -88,7 +88,7 @@ class RunFriction(Shown):
             bad = int(np.argmin(points[0]))
             raise InputError('friction', f'{self.friction[bad]:g} N at {self.velocities[bad]:g} m/s',
                              'against the motion, for laws to be fitted', 'a weight, an offset of the force, its sign '
-                             'or the mass is wrong: look at the table (--csv)')
+                             'or the mass is wrong: check the table (--csv)')
         order = np.argsort(np.abs(self.velocities), kind='stable')
         return FrictionCurve(np.abs(self.velocities)[order], points[0][order], forward[order],
                              spread=np.sort(points[1:], axis=0)[:, order])

@@ -142,7 +142,7 @@ class Table:
                 row = int(np.argmax(bad))
                 raise InputError(self._at(part, row), float(times[row]),
                                  f'a time after the one before it, {float(reached[row])!r} s',
-                                 'sort the rows by time, and leave out what is there twice')
+                                 'sort the rows by time and drop duplicates')
             self._dropped += int(bad.sum())
             latest = float(reached[-1])
             yield block[within & ~bad & (number % self._taken.every == 0)]

@@ -14,12 +14,12 @@ from typing import Any, NoReturn
 import numpy as np
 
 from ..core.arrays import Numbers, has_parquet
-from ..core.errors import InputError
+from ..core.errors import ALLOW, InputError
 from ..recording import Bag, MeasuredRun, RecordedMessage, open_bag, write_measured
 from ..report.html import Shown
 from ..report.model import Part, Table
 from ..report.quantity import quantity
-from ..scene.plausible import FASTEST, MEANT, Plausible, check_number
+from ..scene.plausible import FASTEST, Plausible, check_number
 from . import csv_table
 from .csv_table import ALL, ArrayTable, CsvTable, Rows
 from .units import ACCELERATIONS, FORCES, LENGTHS, SPEEDS, TIMES, Wanted, all_in_si, drive_units, wanted_column
@@ -149,7 +149,7 @@ class Measurement(Shown):
         of = np.flatnonzero((self.times >= rows.begin) & (self.times <= rows.end))
         of = of[of % rows.every == 0]
         if len(of) < 2:
-            raise InputError('DATA', f'{len(of)} rows', 'two rows or more', 'look at --from, --to and --every')
+            raise InputError('DATA', f'{len(of)} rows', 'two rows or more', 'check --from, --to and --every')
         return replace(self, times=self.times[of], columns={name: one[of] for name, one in self.columns.items()})
 
 
@@ -175,7 +175,7 @@ def _of_table(wanted: Mapping[str, Wanted], table: csv_table.Table) -> Measureme
     if units:
         remarks.append(f'units of the headings: {units}')
     if len(times) < 2:
-        raise InputError('DATA', f'{len(times)} rows', 'a file of two rows or more', 'a run takes time')
+        raise InputError('DATA', f'{len(times)} rows', 'a file of two rows or more', 'a run needs a duration')
     if times[0] < 0.0 or times[-1] > _LATEST:
         remarks.append(f'times count from the first row, at {float(times[0])!r} s')
         times = times - times[0]
@@ -246,7 +246,7 @@ def check_plausible_motion(measured: Measurement, meant: Sequence[str]) -> None:
     """Raise InputError on a quantity that moves as far or as fast as no feed axis does, unless it is among `meant`."""
     for name in meant:
         if name not in measured.columns:
-            raise InputError(MEANT, name, 'one of ' + ', '.join(measured.columns), 'nothing else was imported')
+            raise InputError(ALLOW, name, 'one of ' + ', '.join(measured.columns), 'nothing else was imported')
     for name, values in measured.columns.items():
         unit = f'a wrong unit is the usual mistake: {UNIT_OPTION} {name}='
         if name in meant or QUANTITIES[name] not in (LENGTHS, SPEEDS):

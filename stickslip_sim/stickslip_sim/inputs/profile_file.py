@@ -89,11 +89,11 @@ def with_profiles(values: Given, folders: Mapping[str, Path]) -> tuple[dict[str,
 
 def _check_alone(section: str, values: Given, file: str) -> None:
     if values[f'{section}.course'] not in _FORMS[section]:
-        raise InputError(f'{section}.file', file, f'left out with {section}.course: {values[f"{section}.course"]}',
+        raise InputError(f'{section}.file', file, f'omitted with {section}.course: {values[f"{section}.course"]}',
                          f'drop it, or set {section}.course: table (linear between the points) or steps')
     for name in _NUMBERS[section]:
         if values.get(f'{section}.{name}') is not None:
-            raise InputError(f'{section}.file', file, f'left out with {section}.{name}', 'drop one of them')
+            raise InputError(f'{section}.file', file, f'omitted with {section}.{name}', 'drop one of them')
 
 
 class _Profile:
@@ -138,7 +138,7 @@ class _Profile:
         if len(late):
             row = int(late[0]) + 1
             table.refuse(row, float(times[row]), f'a time after the one before it, {float(times[row - 1])!r} s',
-                         'sort the rows by time, and leave out what is there twice')
+                         'sort the rows by time and drop duplicates')
         large = np.flatnonzero(np.abs(values) > (self._most.high or 0.0))
         if len(large):
             table.refuse(int(large[0]), float(values[large[0]]), self._most.range + f' {self._most.unit}',

@@ -69,10 +69,10 @@ def drive_units(lead: str | None, rated: str | None) -> DriveUnits:
     """Return the units of a drive from texts as "10 mm" and "2.4 N m", or a force; raises InputError."""
     turn = None if lead is None else Fraction(stated('--lead', lead, LENGTHS))
     if turn is not None and turn <= 0:
-        raise InputError('--lead', lead, '> 0 m a turn', 'what counts the other way has a unit like "-1 deg"')
+        raise InputError('--lead', lead, '> 0 m a turn', 'for the opposite sense use a unit such as "-1 deg"')
     force = None if rated is None else Fraction(stated('--rated', rated, DriveUnits(turn).of(FORCES)))
     if force is not None and force <= 0:
-        raise InputError('--rated', rated, '> 0, a torque or a force', 'what counts the other way has the unit "-1 %"')
+        raise InputError('--rated', rated, '> 0, a torque or a force', 'for the opposite sense use the unit "-1 %"')
     return DriveUnits(turn, force)
 
 

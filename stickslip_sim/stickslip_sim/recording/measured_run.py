@@ -140,7 +140,7 @@ class MeasuredRun(RecordedRun):
         try:
             stated = None if given is None else float(given)
         except ValueError:
-            raise RecordingError(f'{self.bag.path}: its stick_velocity is no number: {given}') from None
+            raise RecordingError(f'{self.bag.path}: its stick_velocity is not a number: {given}') from None
         velocity = self._velocity
         return STICK_SHARE * max(float(velocity.max()), -float(velocity.min())) if stated is None else stated
 

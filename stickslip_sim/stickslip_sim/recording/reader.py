@@ -112,11 +112,11 @@ class Bag:
     def scene(self) -> Scene:
         """The scene that travels in the run; raises RecordingError when there is none that this version can read."""
         if SCENE_FILE not in self.attachments:
-            raise RecordingError(f'{self.path}: no {SCENE_FILE} travels in it; give a run that stickslip recorded')
+            raise RecordingError(f'{self.path}: it has no {SCENE_FILE}; give a run that stickslip recorded')
         try:
             return parse_scene(self.attachments[SCENE_FILE].decode(errors='replace'))
         except InputError as error:
-            raise RecordingError(f'{self.path}: its {SCENE_FILE} is none of this version: {error}') from None
+            raise RecordingError(f'{self.path}: its {SCENE_FILE} is not valid in this version: {error}') from None
 
     @property
     def _is_by_wall_clock(self) -> bool:
@@ -141,7 +141,7 @@ class Bag:
         try:
             return dict(json.loads(self.attachments.get(attachment, b'{}')))
         except (ValueError, TypeError, RecursionError) as error:
-            raise RecordingError(f'{self.path}: damaged: its {attachment} is no JSON object: {error}') from None
+            raise RecordingError(f'{self.path}: damaged: its {attachment} is not a JSON object: {error}') from None
 
     def messages(self, topics: Iterable[str] | None = None) -> Iterator[bag_files.RecordedMessage]:
         """Yield the messages of some topics (None: all), with simulation time as their log time."""
@@ -263,7 +263,7 @@ class Bag:
         count = self.counts[topic]
         if (size := count * sum(column.itemsize for column in first.values())) > MOST_TOPIC_BYTES:
             raise RecordingError(f'{self.path}: {topic} has {count} messages of {size >> 20} MiB in all, which do not '
-                                 'fit: take messages() one by one, or a part of the recording')
+                                 'fit: iterate over messages(), or use a part of the recording')
         return {name: np.empty(count, column.dtype) for name, column in first.items()}
 
     def _store(self, type_name: str) -> Typestore:
@@ -309,7 +309,7 @@ class Recording:
             self.topics = {**file.topics, **self.topics}
         spans = [file.span for file in self._files if file.span is not None]
         if not spans:
-            raise RecordingError(f'{self.path}: no message can be read of it; give a recording that holds some')
+            raise RecordingError(f'{self.path}: it has no readable message; give another recording')
         self.begin, self.end = min(begin for begin, _ in spans), max(end for _, end in spans)
         for file in self._files:
             file.begin = self.begin

@@ -157,7 +157,7 @@ def check_samples(bag: Bag, count: int, rise: bool, modes: Iterable[float]) -> N
     if count < 2:
         raise RecordingError(f'{bag.path}: {count} states with their friction force; a run has at least 2')
     if not rise or not set(modes) <= set(Mode):
-        raise RecordingError(f'{bag.path}: its steps do not follow each other in time, or are in unknown modes')
+        raise RecordingError(f'{bag.path}: its steps are out of order or in unknown modes')
 
 
 class _SamplesSeen:

@@ -34,7 +34,7 @@ def simulate(
     if not 0.0 <= duration < float('inf'):
         raise InputError('duration', duration, 'finite and >= 0 s', 'give the seconds to simulate')
     if digits < FEWEST_DIGITS:
-        raise InputError('digits', digits, f'>= {FEWEST_DIGITS}', 'a judge of doubles needs more digits than they have')
+        raise InputError('digits', digits, f'>= {FEWEST_DIGITS}', 'judging doubles needs more digits than they have')
     try:
         import mpmath  # noqa: F401
     except ImportError:

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""The demonstration, `make run`: drives the installed node from a process of its own, and shows what was recorded."""
+"""Run the demonstration of `make run`: drive the installed node from another process, and show the recording."""
 
 import argparse
 import os
@@ -154,9 +154,10 @@ def main() -> int:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog='python3 -m stickslip_sim.ros.demo', description=__doc__)
-    parser.add_argument('--duration', type=float, default=10.0, metavar='S',
-                        help='simulated and real time [%(default)s s]')
-    parser.add_argument('--out', type=Path, default=Path('runs'), metavar='FOLDER', help='where runs go [%(default)s]')
+    parser.add_argument('--duration', type=float, default=10.0, metavar='SECONDS',
+                        help='simulated and real time in s [default: %(default)s]')
+    parser.add_argument('--out', type=Path, default=Path('runs'), metavar='FOLDER',
+                        help='folder of the runs [default: %(default)s]')
     options = parser.parse_args()
     if not 1.0 <= options.duration <= 1e6:
         parser.error(f'argument --duration: {options.duration:g} s; give 1 to 1e6 s')
@@ -210,7 +211,7 @@ def _drive(driver: Driver, process: subprocess.Popen[bytes], duration: float) ->
         while driver.time < duration and process.poll() is None:
             rclpy.spin_once(driver, timeout_sec=0.5)
             if not driver.is_connected and time.monotonic() - begin > _PATIENCE:
-                raise RecordingError(f'no sign of sim_node within {_PATIENCE:g} s; is another ROS_DOMAIN_ID in force?')
+                raise RecordingError(f'no sign of sim_node within {_PATIENCE:g} s; check ROS_DOMAIN_ID')
     except KeyboardInterrupt:
         print('  interrupted; the run ends here')
 

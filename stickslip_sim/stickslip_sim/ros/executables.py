@@ -14,35 +14,34 @@ if TYPE_CHECKING:
 _SIM_NODE = """\
 usage: sim_node [--help] [--ros-args [--params-file SCENE.yaml] [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]
 
-Simulates a feed axis with stick-slip friction in real time (node feed_axis).  Without a file it runs the scene
-paper_fig8; -p scene:=NAME takes another shipped one, -p record.enabled:=true records a bag from the start.
+Simulate a feed axis with stick-slip friction in real time (node feed_axis).  The default scene is paper_fig8; choose
+another shipped one with -p scene:=NAME, and record a bag from the start with -p record.enabled:=true.
 """
 _REPLAY_NODE = """\
 usage: replay_node [--help] --ros-args -p bag:=RUN_FOLDER [-p NAME:=VALUE]... [-r TOPIC:=OTHER]...
 
-Plays a recorded run (node replay): all its topics for viewers, or with -p mode:=commands the orders it was given, into
-a live sim_node.  The other parameters are named as the flags of ros2 bag play: rate, loop, start_offset,
+Play a recorded run (node replay): all its topics for viewers, or with -p mode:=commands its commands into a live
+sim_node.  The other parameters are named like the flags of ros2 bag play: rate, loop, start_offset,
 playback_duration, clock, delay, start_paused, topics.
 """
 _HEALTH = """\
 usage: health [--help] [--ros-args [-p patience:=S] [-r __ns:=/NAMESPACE]]
 
-Waits for what the axis in this namespace says of itself in /diagnostics, once a second.  Exit code 0: all is well, or
-there are warnings; 1: there is an error, or it says nothing.
+Wait for the next diagnostics of the axis in this namespace.  Exit code 0: no errors; 1: errors, or no diagnostics.
 """
 _CONTROLLER_NODE = """\
 usage: controller_node [--help] --controller FILE.py:NAME [--gain NAME=VALUE]... [--setpoint FILE.csv] [--rate HZ]
                        [--duration S] [--ros-args [-r __ns:=/NAMESPACE]]
 
-Lets a controller of yours drive the axis in this namespace (node own_controller): the same as with stickslip
-close-loop, in real time, or with time.mode lockstep in steps that it makes itself, from a reset on.  The axis needs
-joint_interface.enabled:=true.  At the end it stops the drive: after --duration, on Ctrl-C, when the controller fails.
+Drive the axis in this namespace with your own controller (node own_controller), the one of stickslip close-loop: in
+real time, or with time.mode lockstep by stepping the axis itself after a reset.  The axis needs
+joint_interface.enabled:=true.  The drive stops after --duration, on Ctrl-C, or if the controller fails.
 """
 _CONTROLLER = """\
 usage: {0} [--help] [--ros-args [-p NAME:=VALUE]... [-r __ns:=/NAMESPACE]]
 
 {1}
-Hears joint_states and answers on joint_commands, which the axis speaks with joint_interface.enabled:=true.
+It reads joint_states and writes joint_commands; start the axis with joint_interface.enabled:=true.
 """
 
 
@@ -89,13 +88,13 @@ def health(args: Sequence[str] | None = None) -> int:
 
 def cascade_controller(args: Sequence[str] | None = None) -> int:
     """Run until SIGINT or SIGTERM; return the exit code: 0 ended, 1 internal error, 2 refused start."""
-    what = 'Lets the slider follow positioning moves with a cascade: P position, PI velocity, velocity feed-forward.'
+    what = 'Follow positioning moves with a cascade: P position, PI velocity, velocity feed-forward.'
     return _controller('cascade_controller', what, False, args)
 
 
 def compensating_controller(args: Sequence[str] | None = None) -> int:
     """Run as `cascade_controller` does, with the friction compensated."""
-    what = 'Lets the slider follow positioning moves with a cascade whose friction is compensated.'
+    what = 'Follow positioning moves with a cascade and friction compensation.'
     return _controller('compensating_controller', what, True, args)
 
 

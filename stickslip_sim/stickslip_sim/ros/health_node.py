@@ -16,7 +16,7 @@ from .node.endpoints import subscription
 from .node.parameters import ListedNode
 from .programs import GivenParameters
 
-_PATIENCE = Parameter('patience', 'double', 8.0, 's', 'to wait for the axis; finding it may take 3 s', 1.0, 3600.0)
+_PATIENCE = Parameter('patience', 'double', 8.0, 's', 'Time to wait for the axis; discovery may take 3 s.', 1.0, 3600.0)
 
 
 class Listener(ListedNode):
@@ -47,8 +47,8 @@ class Listener(ListedNode):
     def verdict(self) -> str:
         """Return how the axis is in one line; raises StickslipError when it is not well, or said nothing."""
         if not self.statuses:
-            raise StickslipError(f'{self.axis} said nothing on {DIAGNOSTICS.name} within {self.patience:g} s; does it'
-                                 ' run, in this namespace and ROS_DOMAIN_ID?')
+            raise StickslipError(f'{self.axis} published nothing on {DIAGNOSTICS.name} within {self.patience:g} s; is'
+                                 ' it running, in this namespace and ROS_DOMAIN_ID?')
         return health_of(self.axis, self.statuses)
 
 

@@ -96,7 +96,7 @@ class LockStep:
     def _call(self, client: Client, request: Any) -> Any:
         answer = self._answer(client, request, _PATIENCE)
         if answer is None and not self._is_over():
-            raise StickslipError(f'{self._axis} does not answer any more: has it ended?')
+            raise StickslipError(f'{self._axis} no longer answers: has it ended?')
         if answer is not None and not answer.success:
             raise RefusedError(f'{self._axis}: {answer.message}')
         return answer

@@ -57,7 +57,7 @@ def answer_of(service: str, request: Mapping[str, object], node: str, patience: 
         session.spin_until(lambda: answer.done() or not client.service_is_ready(), patience + duration)
         if not answer.done():
             raise StickslipError(f'{name} has not answered to {service} within {patience + duration:g} s: is it busy,'
-                                 ' or has it ended? --timeout waits longer')
+                                 ' or has it ended? raise --timeout')
         return answer.result()
 
 
@@ -108,7 +108,7 @@ class _Session:
             greeting = greeter.call_async(GetParameters.Request())
             if self.spin_until(greeting.done, min(_GREETING, end - time.monotonic())):
                 return self._check_single(name, greeter, answers)
-        raise StickslipError(f'{name} is there, but does not answer within {patience:g} s; --timeout waits longer')
+        raise StickslipError(f'{name} exists, but does not answer within {patience:g} s; raise --timeout')
 
     def spin_until(self, condition: Callable[[], bool], patience: float) -> bool:
         """Let messages come in until a condition holds, for so many seconds at most; return whether it does."""
@@ -142,8 +142,8 @@ class _Session:
         offers = (offer for offer, _ in self._node.get_service_names_and_types() if offer.endswith(f'/{service}'))
         others = sorted(offer.removesuffix(f'/{service}') for offer in offers if self._node.count_services(offer))
         if others:
-            return f'{text}; there is {", ".join(others)}: name it with --node'
-        return f'{text}; does it run, with this ROS_DOMAIN_ID? --node has other names, --timeout waits longer'
+            return f'{text}; found {", ".join(others)}: name it with --node'
+        return f'{text}; is it running, with this ROS_DOMAIN_ID? check --node, or raise --timeout'
 
 
 def _counted_answers(client: Client) -> Counter[int]:

@@ -102,7 +102,7 @@ def _one_way(friction: Friction, given: _Values) -> Friction:
 def _table(table: KineticTable, given: _Values) -> KineticTable:
     for name, value in given.items():
         if name not in _OF_A_TABLE:
-            raise InputError(f'friction.kinetic.{name}', value, 'left out where friction.kinetic.law is a table',
+            raise InputError(f'friction.kinetic.{name}', value, 'omitted when friction.kinetic.law is a table',
                              'give velocities and coefficients')
     return replace(table, **given)
 
@@ -112,7 +112,7 @@ def _smooth(table: KineticTable, given: _Values) -> KineticTable:
     assert law is not None
     for name, value in given.items():
         if name in _OF_A_TABLE or (name == 'exponent' and not isinstance(law.shape, Decay)):
-            raise InputError(f'friction.kinetic.{name}', value, 'left out with this smooth law of friction.kinetic',
+            raise InputError(f'friction.kinetic.{name}', value, 'omitted with this smooth law of friction.kinetic',
                              'give the numbers of that law')
     if 'exponent' in changes:
         changes['shape'] = Decay(changes.pop('exponent'))
@@ -190,7 +190,7 @@ def check_range(parameter: str, name: str, values: Numbers) -> None:
     if not good.all():
         index = int(np.flatnonzero(~good.reshape(len(good), -1).all(axis=1))[0])
         raise InputError(name, float(values[~good][0]), f'finite and {known.range} {known.unit}'.rstrip(),
-                         f'look at index {index} of the array')
+                         f'check index {index} of the array')
 
 
 def common_length(arrays: Mapping[str, Numbers]) -> int:
@@ -216,7 +216,7 @@ def _column(name: str, axis: Axis) -> Column:
         raise InputError(name, 'given', 'one of drive_velocity, external_force, ' + ', '.join(BATCH_COLUMNS),
                          'rename it, or leave it out')
     if name.startswith('contact_') and not pack(axis)[layout.COMPLIANT]:
-        raise InputError(name, 'given', 'left out with a rigid contact', 'give the axis a compliant contact')
+        raise InputError(name, 'given', 'omitted with a rigid contact', 'give the axis a compliant contact')
     return BATCH_COLUMNS[name]
 
 
@@ -237,7 +237,7 @@ def _check_side(rows: Numbers, places: Iterable[int], at_rest: Numbers, side: st
         if bad.any():
             index = int(np.flatnonzero(bad)[0])
             raise InputError(f'static_{side}{name}', float(values[index]), allowed,
-                             f'look at index {index} of the array')
+                             f'check index {index} of the array')
 
 
 _ROWS = 64          # of the event table

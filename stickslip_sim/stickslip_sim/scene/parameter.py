@@ -145,7 +145,7 @@ class Parameter:
     def _string(self, value: object) -> str:
         if self.choices:
             if not isinstance(value, str) or value not in self.choices:
-                raise InputError(self.name, value, self.allowed, 'nothing else exists yet')
+                raise InputError(self.name, value, self.allowed, 'choose one of these')
             return value
         if not isinstance(value, str):
             raise InputError(self.name, value, self.allowed, 'put it in quotes')

@@ -1,34 +1,32 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers that a feed axis has, to ask back when a unit was mistaken: far narrower than what the engine can take.
+"""Plausible ranges for a feed axis, which catch a mistaken unit: far narrower than what the engine can take.
 
-A drive at 5 m/s, or friction that falls up to 100 m/s, is most likely meant in mm/s; simulated as it stands it slides
-without stick-slip, and nothing in that answer shows the mistake.  So the tool refuses such a number once, with the unit
-in which it was read, until it is said to be meant.  So does the node, whose guard for commands is
-`command.max_velocity`.
+A drive at 5 m/s, or friction that falls up to 100 m/s, is most likely given in mm/s; simulated like that it slides
+without stick-slip, and nothing in the result shows the mistake.  The tool refuses such a number, with the unit in which
+it was read, unless it is allowed by name.  So does the node, whose guard for commands is `command.max_velocity`.
 """
 
 import difflib
 from collections.abc import Collection, Iterator, Mapping
 from typing import NamedTuple
 
-from ..core.errors import InputError
+from ..core.errors import ALLOW, InputError
 from .schema import backward_name
 
-MEANT = '--meant'          # the option of the tool
 FASTEST = 3.0              # m/s: 180 m/min, above the rapid traverse of linear motors
 ROUGHEST = 2.0             # a coefficient of friction: rubber on dry concrete is 1
 _SPEED_FIX, _COEFFICIENT_FIX = '5 mm/s is 0.005', 'a force is divided by the normal force'
 
 
 class Meant(NamedTuple):
-    """Where it is said that numbers are meant: under which name, and what to add for a parameter."""
+    """How to accept implausible numbers: the name of the option or parameter, and what to add for a parameter."""
 
     name: str
     addition: str
 
 
-OF_TOOL, OF_NODE = Meant(MEANT, f'{MEANT} {{}}'), Meant('meant', "-p 'meant:=[{}]'")
+OF_TOOL, OF_NODE = Meant(ALLOW, f'{ALLOW} {{}}'), Meant('meant', "-p 'meant:=[{}]'")
 
 
 class Plausible(NamedTuple):
@@ -53,7 +51,7 @@ PLAUSIBLE: Mapping[str, Plausible] = {
 
 
 def check_plausible(values: Mapping[str, object], meant: Collection[str], where: Meant = OF_TOOL) -> None:
-    """Raise InputError on a value, SI units, that no feed axis has, unless its name is among those `meant`."""
+    """Raise InputError on a value, in SI units, that no feed axis has, unless its name is in `meant`."""
     for name in meant:
         if name not in PLAUSIBLE:
             close = difflib.get_close_matches(name, PLAUSIBLE, 1)
@@ -66,11 +64,11 @@ def check_plausible(values: Mapping[str, object], meant: Collection[str], where:
 
 
 def check_number(name: str, value: float, limit: Plausible, where: Meant = OF_TOOL) -> None:
-    """Raise InputError on a number beyond a limit: it is asked back."""
+    """Raise InputError on a number beyond a limit, with how it was read."""
     if abs(value) > limit.most:
         read = f'{value:g} {limit.unit}'.rstrip()
         raise InputError(name, value, f'plausible for a feed axis, up to {limit.most:g} {limit.unit}'.rstrip(),
-                         f'it was read as {read}, and {limit.usual}; if {read} is meant, '
+                         f'it was read as {read}, and {limit.usual}; if {read} is intended, '
                          f'add {where.addition.format(name)}')
 
 

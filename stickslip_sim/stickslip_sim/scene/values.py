@@ -66,7 +66,7 @@ def _checked(entry: Parameter, value: object, values: Mapping[str, object]) -> o
     if entry.when is not None and not entry.when.holds(values):
         when = _deciding(entry.when, values)
         choice = f'with {when.name}: {yaml_word(values[when.name])}' if when.name in values else f'without {when.name}'
-        raise InputError(entry.name, value, f'left out {choice}', f'drop it, or set {when}')
+        raise InputError(entry.name, value, f'omitted {choice}', f'drop it, or set {when}')
     return checked
 
 

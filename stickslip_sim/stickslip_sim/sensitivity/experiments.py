@@ -282,7 +282,7 @@ def _check(scene: Scene, wishes: Wishes) -> None:
         if not good:
             raise InputError(option, value, allowed, 'give a value in this range')
     if sensors.deviations['position'] == 0.0:
-        raise InputError('--resolution', 0.0, '> 0 m where --noise is 0', 'no reading is exact: give one of them')
+        raise InputError('--resolution', 0.0, '> 0 m where --noise is 0', 'readings are never exact: give one of them')
     if not 1 <= round(wishes.duration * sensors.rate) <= _MOST_SAMPLES:
         raise InputError('--rate', sensors.rate, f'such that there are 1 to {_MOST_SAMPLES} readings in '
                          f'{wishes.duration:g} s', 'measure less often, or for a shorter time')
@@ -294,7 +294,7 @@ def _is_noise(deviation: float | None) -> bool:
 
 def _check_parameter(scene: Scene, name: str) -> None:
     if name.startswith('drive.'):
-        raise InputError('--for', name, 'no parameter of the drive', 'its feed is what is proposed')
+        raise InputError('--for', name, 'no parameter of the drive', 'the feed is the proposal')
     moved_number(scene, name, SHARE_MOVED)
     if number_at(scene.values, name) == 0.0:
-        raise InputError('--for', name, 'a number other than 0: what is known of it is a share', 'give it with --set')
+        raise InputError('--for', name, 'a number other than 0: its prior knowledge is relative', 'give it with --set')

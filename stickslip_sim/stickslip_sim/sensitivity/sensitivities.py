@@ -160,5 +160,5 @@ def _end(one: Figure, trace: Trace) -> float:
 def _names(what: str, given: Iterable[str]) -> list[str]:
     names = [given] if isinstance(given, str) else list(given)
     if not names or len(set(map(str, names))) < len(names):
-        raise InputError(what, names, 'one or more names, each once', 'name what is to be differentiated')
+        raise InputError(what, names, 'one or more names, each once', 'name the figures or parameters to differentiate')
     return names

@@ -61,7 +61,7 @@ def check_fault(fault: Fault, period: float) -> None:
     if len(fault.id) > _ID_LENGTH or not fault.id.isprintable() or not fault.id:
         raise InputError('id', fault.id, f'printable text of 1 to {_ID_LENGTH} characters', 'shorten it')
     if not 0.0 <= fault.start <= MAX_TIME:
-        raise InputError('start', fault.start, f'0 to {MAX_TIME:g} s', 'a fault cannot begin in the past')
+        raise InputError('start', fault.start, f'0 to {MAX_TIME:g} s', 'faults cannot begin in the past')
     if not (period <= fault.duration <= MAX_TIME or fault.duration == math.inf):
         raise InputError('duration', fault.duration, f'from a step ({period:g} s) to {MAX_TIME:g} s, or inf',
                          'inf lasts until it is cleared')

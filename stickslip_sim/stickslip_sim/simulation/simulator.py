@@ -183,7 +183,7 @@ class Simulator:
         """Begin to go on to a time; return the events so far.  Raises InputError when it is before, or no time."""
         if not (self._solved.time <= to and math.isfinite(to.second) and 0.0 <= to.fraction < 1.0):
             raise InputError('time', tuple(to), f'finite and not before {self._solved.time.seconds!r} s',
-                             'time does not go back: reset to begin anew')
+                             'time does not go backwards: reset to start again')
         if self._inputs.are_commanded:
             self._solved.obey(self._waiting)
         events, self._waiting = self._waiting, []

@@ -282,13 +282,13 @@ class SolvedAxis:
         """Let a solver go on whose table of events was full; raise SolverError where it gave up."""
         self.time = max(self.time, Instant(float(self._state.second), float(self._state.fraction)))
         if end == OUT_OF_RANGE:
-            raise SolverError(f'the state leaves the range of numbers after t = {self.time.seconds!r} s; '
+            raise SolverError(f'the state overflows after t = {self.time.seconds!r} s; '
                               f'{self._solver.advice}')
         if end == UNSOUND:
             raise self._unsound()
         crowd.take(self.time, rows)
         if end != FULL or crowd.count > MAX_EVENTS_AT_ONCE:
-            raise SolverError(f'{crowd.count} events up to t = {self.time.seconds!r} s and time hardly goes on; '
+            raise SolverError(f'{crowd.count} events up to t = {self.time.seconds!r} s and time hardly advances; '
                               'friction or inputs are too extreme for this axis: check the scene')
 
     def _check_samples(self, rows: NDArray[np.float64]) -> None:
@@ -299,10 +299,10 @@ class SolvedAxis:
             raise self._out_of_range(second + fraction)
 
     def _out_of_range(self, time: float) -> SolverError:
-        return SolverError(f'the state leaves the range of numbers at t = {time!r} s; {self._solver.advice}')
+        return SolverError(f'the state overflows at t = {time!r} s; {self._solver.advice}')
 
     def _unsound(self) -> UnsoundError:
         mode = _MODES[int(self._state.mode)].name
-        return UnsoundError(f'the run contradicts its own motion or balance of energy at t = {self.time.seconds!r} s, '
-                            f'in mode {mode}: none of its figures can be trusted; the solver is at fault, not the '
+        return UnsoundError(f'the run violates its own motion or energy balance at t = {self.time.seconds!r} s, '
+                            f'in mode {mode}: do not trust its figures; this is an error of the solver, not of the '
                             'scene: please report both')

@@ -20,8 +20,8 @@ def under_load(solver: Solver, axis: Axis, normal_force: InputProfile) -> Solver
     least, _ = normal_force.bounds()
     if least < 0.0:
         raise InputError('axis.normal_force + normal_load', least, '>= 0 N at all times',
-                         'a slideway does not pull: raise axis.normal_force, or make the load smaller (sinusoids count '
-                         'with their whole amplitudes)')
+                         'a slideway cannot pull: raise axis.normal_force, or reduce the load (sinusoids count with '
+                         'their full amplitude)')
     if not normal_force.is_stepwise:
         if solver.with_normal_force is None:
             raise InputError('normal_load', 'a load that varies smoothly',

@@ -57,7 +57,7 @@ class Folder:
         """Make the folder with the description of the study and an empty table: whole, or not at all."""
         if os.path.lexists(self.path):
             raise InputError('--out', str(self.path), 'a folder that does not exist',
-                             'choose another name, or add --resume to go on with it')
+                             'choose another name, or add --resume to continue it')
         temporary = self.path.absolute().with_name(f'.{os.getpid()}.{self.path.name}')
         with refusing(self.path, 'nothing is left behind'), made_folder(temporary):
             check_resources(study, temporary)
@@ -77,8 +77,8 @@ class Folder:
                 file = held.enter_context((self.path / SIDECAR).open('r+b'))
                 fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except BlockingIOError:
-                raise InputError('--out', str(self.path), 'a folder that no other process works on',
-                                 'wait for that one, or end it and add --resume') from None
+                raise InputError('--out', str(self.path), 'a folder that no other process uses',
+                                 'wait for that process, or end it and add --resume') from None
             except OSError as error:
                 raise _refusal(self.path, error) from None
             yield
@@ -102,7 +102,7 @@ class Folder:
         found = self.described()
         for name, value in study.described().items():
             if name != 'command' and found.get(name) != value:
-                raise InputError('--resume', str(self.path), f'the folder of this very study; its {name} is another',
+                raise InputError('--resume', str(self.path), f'the folder of this study; its {name} is another',
                                  f'give the command that stands in its {SIDECAR}, or another folder')
 
     def whole_chunks(self, study: Tabled) -> list[Numbers]:
@@ -152,7 +152,7 @@ def refusing(path: Path, comfort: str = KEPT) -> Iterator[None]:
 
 
 def _refusal(path: Path, error: OSError, comfort: str = KEPT) -> InputError:
-    return InputError('--out', str(path), 'a place that can be written', f'{error.strerror or error}; {comfort}')
+    return InputError('--out', str(path), 'a writable place', f'{error.strerror or error}; {comfort}')
 
 
 # The processes, memory and disk space of a study, checked before it begins.

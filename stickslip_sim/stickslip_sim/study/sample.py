@@ -151,8 +151,8 @@ def correlations_of(names: Sequence[str], given: object) -> Correlations | None:
         seen.add(pair)
         matrix[i, j] = matrix[j, i] = number
     if np.linalg.eigvalsh(matrix)[0] < _LEAST:
-        raise InputError('correlations', [list(row) for row in matrix.tolist()], 'a positive definite matrix: no '
-                         'numbers are correlated like this', 'bring those that are near 1 or -1 nearer to 0')
+        raise InputError('correlations', [list(row) for row in matrix.tolist()], 'a positive definite matrix: these '
+                         'contradict each other', 'move those near 1 or -1 towards 0')
     return tuple(map(tuple, matrix.tolist())) if seen else None
 
 
@@ -223,7 +223,7 @@ class Sobol:
 
     def __post_init__(self) -> None:
         if not 1 <= self.count <= MOST_DRAWN:
-            raise InputError('--sobol', self.count, f'1 to {MOST_DRAWN} points', 'best a power of two')
+            raise InputError('--sobol', self.count, f'1 to {MOST_DRAWN} points', 'preferably a power of two')
 
     def points(self, first: int, last: int) -> Numbers:
         """Return the points from `first` on, up to `last`: a row each, a column for each variation."""

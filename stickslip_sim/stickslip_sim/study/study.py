@@ -156,7 +156,7 @@ def study_of(found: Mapping[str, Any]) -> Study:
             return study
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
         pass
-    raise InputError('study', str(found.get('scene')), 'as a sweep describes it', 'it was changed; sweep again')
+    raise InputError('study', str(found.get('scene')), 'as written by sweep', 'it was changed; sweep again')
 
 
 def _uncertain(sample: Saltelli) -> dict[str, Any]:

@@ -110,7 +110,7 @@ def parameter_of(name: str, sections: Sequence[str] = MOTION_SECTIONS) -> tuple[
     section = name.partition('[')[0].partition('.')[0]
     if section not in sections and (name.partition('[')[0] in BY_NAME or section == GAIN):
         raise InputError('parameter', name, 'one that decides the motion: in ' + ', '.join(sections),
-                         'the others change no run')
+                         'the others do not affect the motion')
     return entry_of(name)
 
 

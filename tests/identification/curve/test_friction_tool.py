@@ -84,7 +84,7 @@ def test_each_direction_gets_its_own_curve(tmp_path: Path, capsys: Capture) -> N
 @pytest.mark.parametrize(('arguments', 'said'), [
     (('--speed-unit', 'furlong'), '--speed-unit = '),
     (('--speed-unit', 'm/s'), 'must be mm/s, as the heading says'),
-    (('--speed-unit', 'mm/s', '--scene', AXIS), '--scene and --set are for the scene'),
+    (('--speed-unit', 'mm/s', '--scene', AXIS), '--scene and --set need --out'),
     (('--speed-unit', 'mm/s', '--out', 'scene.txt'), 'a file ending in .yaml or .yml'),
     (('--speed-unit', 'mm/s', '--plot', 'curve.pdf.txt'), '--plot = '),
     (('--speed-unit', 'mm/s', '--law', 'parabola'), 'parabola'),

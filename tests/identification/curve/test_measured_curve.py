@@ -120,7 +120,8 @@ def test_wrong_units_are_refused(speed: str, force: str | None, normal_force: fl
     ('5,0.12\n100,0.09\n', Units('mm/s', 'N', 1200.0), 'friction', 'N and 1200 N'),
 ])
 def test_a_mistaken_unit_is_asked_back(tmp_path: Path, text: str, units: Units, name: str, read: str) -> None:
-    with pytest.raises(InputError, match=f'the highest {name} = .* it was read as {read}: .* add --meant {name}'):
+    with pytest.raises(InputError,
+                       match=f'the highest {name} = .* it was read as {read}: .* add --allow-implausible {name}'):
         curve_of(tmp_path, text, units)
     assert len(curve_of(tmp_path, text, units, meant=(name,)).speeds) == 2
 

@@ -121,7 +121,7 @@ def mine(t, measured):
         axis.end(signal.SIGKILL)
         _, errors = process.communicate(DEADLINE)
     assert (process.poll(), errors.splitlines()[-1]) == (
-        1, 'controller_node: /feed_axis does not answer any more: has it ended?')
+        1, 'controller_node: /feed_axis no longer answers: has it ended?')
 
 
 def test_the_watchdog_stops_the_drive_of_a_killed_controller(tmp_path: Path) -> None:

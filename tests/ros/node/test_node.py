@@ -93,7 +93,7 @@ class TestParameters:
         ({'friction__kinetic__coefficients': [0.5, 0.05]}, ['friction.kinetic.coefficients[0] = 0.5', '0.12']),
         ({'axis__mass': 300.0, 'friction__static__limit': 0.01}, ['friction.static.limit']),
         ({'time__rate': 500.0}, ['time.rate = 500.0 is refused: must be 200.0, as at the start', READ_ONLY]),
-        ({'drive__times': [0.0]}, ['drive.times', 'must be left out, as at the start', READ_ONLY]),
+        ({'drive__times': [0.0]}, ['drive.times', 'must be omitted, as at the start', READ_ONLY]),
         ({'record__enabled': True}, ['record.enabled = True is refused: must be false, as at the start', READ_ONLY]),
         ({'start_type_description_service': False}, ['must be true, as at the start', READ_ONLY]),
         ({'axis__weight': 1.0}, ['axis.weight']),
@@ -141,7 +141,7 @@ class TestParameters:
         name = 'friction.kinetic.velocities'
         answer = connected.set_parameters(**unusual)
         assert not answer.successful
-        assert answer.reason.endswith(f"it was read as 35 m/s, and 5 mm/s is 0.005; if 35 m/s is meant, "
+        assert answer.reason.endswith(f"it was read as 35 m/s, and 5 mm/s is 0.005; if 35 m/s is intended, "
                                       f"add -p 'meant:=[{name}]'")
         assert 'did you mean friction.kinetic.velocities?' in connected.set_parameters(meant=[f'{name}s']).reason
         assert connected.set_parameters(**unusual, meant=[name]).successful

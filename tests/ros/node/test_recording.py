@@ -43,7 +43,7 @@ class TestPlace:
             code, errors = process.wait()
         *before, refusal = errors.splitlines()
         assert code == 2
-        assert refusal.startswith(f"sim_node: record.folder = '{tmp_path}': {tmp_path} exists and is never overwritten")
+        assert refusal.startswith(f"sim_node: record.folder = '{tmp_path}': {tmp_path} exists and is not overwritten")
         assert [line for line in before if '[ERROR]' in line] == []
         assert [file.name for file in tmp_path.iterdir()] == ['mine']
 
@@ -65,7 +65,7 @@ class TestPlace:
             assert (answer.success, 'must be below' in answer.message) == (False, True), answer.message
             assert axis.set_parameters(record__folder=f'{runs}/mine').successful
             answer = axis.switch('record', True)
-            assert (answer.success, f'{runs}/mine exists and is never overwritten' in answer.message) == (False, True)
+            assert (answer.success, f'{runs}/mine exists and is not overwritten' in answer.message) == (False, True)
             status, _ = axis.status('recorder')
             assert (status.level, status.message) == (b'\2', answer.message)    # and the axis goes on
             for place in (f'{runs}/second', ''):

@@ -235,7 +235,7 @@ class TestProcess:
         damage(file)
         code, errors = ended_at_once('replay_node', f'bag:={file}', 'rate:=100')
         assert (code, 'Traceback' in errors) == (2, False)
-        assert f'replay_node: {file}: damaged behind 1.' in errors
+        assert f'replay_node: {file}: damaged after 1.' in errors
 
     @pytest.mark.parametrize(('arguments', 'reported'), [
         ([], "bag = '' is refused: must be the folder of a run"),
@@ -245,11 +245,11 @@ class TestProcess:
         (['bag:=BAG', 'topics:=[nothing]'], "topics = 'nothing' is refused: must be in the recording: "),
         (['bag:=BAG', 'reit:=2.0'], 'did you mean rate?'),
         (['bag:=BAG', 'mode:=commands', 'clock:=40.0'], 'clock = 40.0 is refused'),
-        (['bag:=BAG', 'axis:=/feed_axis'], "axis = '/feed_axis' is refused: must be left out"),
+        (['bag:=BAG', 'axis:=/feed_axis'], "axis = '/feed_axis' is refused: must be omitted"),
         (['bag:=BAG', 'mode:=commands', 'axis:=/a//b'], "axis = '/a//b' is refused"),
-        (['bag:=OTHER'], 'use the version of then'),
+        (['bag:=OTHER'], 'use the version that recorded it'),
         (['bag:=UNKNOWN'], 'no definition of nobody_msgs/msg/Nothing'),
-        (['bag:=UNKNOWN', 'mode:=commands'], 'no drive velocities and no forces in it'),
+        (['bag:=UNKNOWN', 'mode:=commands'], 'neither drive velocities nor forces'),
     ])
     def test_refused_in_one_line(self, bag: Path, tmp_path: Path, arguments: list[str], reported: str) -> None:
         bags = {'BAG': bag, 'OTHER': another(tmp_path / 'other.mcap', SLIDER_STATE.type, 'RIHS01_0'),

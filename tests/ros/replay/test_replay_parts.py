@@ -202,7 +202,7 @@ class TestRecording:
         path, empty = tmp_path / 'cut.mcap', foreign(tmp_path, {}, messages=0).read_bytes()
         for data, reported in ((b'', 'not an MCAP file'), (whole[:5], 'not an MCAP file'),
                                (whole[:20], 'not an MCAP file'), (b'nothing of that kind', 'not an MCAP file'),
-                               (whole[:60], 'no message can be read'), (empty, 'no message can be read')):
+                               (whole[:60], 'it has no readable message'), (empty, 'it has no readable message')):
             path.write_bytes(data)
             with pytest.raises(RecordingError, match=reported):
                 Recording(path)
@@ -241,7 +241,7 @@ class TestOtherRecorders:
         assert recording.begin > 1_700_000_000 * SECOND
         assert recording.length == 2e-9
         damage(recording.path)
-        with pytest.raises(RecordingError, match=r'damaged behind 0 s'):
+        with pytest.raises(RecordingError, match=r'damaged after 0 s'):
             list(recording.messages(['/chatter'], recording.begin, recording.end))
 
     def test_without_figures_at_its_end(self, tmp_path: Path) -> None:

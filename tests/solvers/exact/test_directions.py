@@ -242,7 +242,7 @@ def test_psi_ends_where_mu_k_of_its_direction_does() -> None:
     ({'friction.static.backward.initial': 0.3}, 'friction.static.backward.limit = 0.24 is refused'),
     ({'friction.kinetic.backward.coefficients': (0.13, 0.05)}, '<= friction.static.backward.initial (0.12)'),
     ({'friction.kinetic.backward.coefficients': (0.1, 0.05, 0.01)}, 'friction.kinetic.backward.velocities'),
-    ({'friction.kinetic.backward.initial': 0.1}, 'left out with friction.kinetic.law: table'),
+    ({'friction.kinetic.backward.initial': 0.1}, 'omitted with friction.kinetic.law: table'),
     ({'friction.kinetic.backward.law': 'table'}, 'friction.kinetic.backward.law'),
     ({'friction.static.backward.limit': -0.1}, 'friction.static.backward.limit = -0.1 is refused')])
 def test_what_has_no_meaning_is_refused_by_its_name(changes: dict[str, object], text: str) -> None:

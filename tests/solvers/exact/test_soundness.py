@@ -80,7 +80,7 @@ def not_a_number(s: Any) -> None:
 @pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
 @pytest.mark.parametrize('mode', [Mode.STICK, Mode.ACCELERATING, Mode.COASTING, Mode.DECELERATING])
 def test_an_event_that_is_none_ends_the_run(contact: Contact, mode: Mode) -> None:
-    with pytest.raises(UnsoundError, match=f'at t = .* in mode {mode.name}: none of its figures can be trusted'):
+    with pytest.raises(UnsoundError, match=f'at t = .* in mode {mode.name}: do not trust its figures'):
         run_in_steps(paper_axis(contact), doctored(event_too_early, mode))
 
 
@@ -109,7 +109,7 @@ def test_the_tool_gives_no_figure_of_such_a_run(monkeypatch: pytest.MonkeyPatch,
     assert tool(['simulate', 'paper_fig7', '--duration', '5']) == 4
     reported = capsys.readouterr()
     assert reported.out == ''
-    assert 'contradicts its own motion or balance of energy at t = ' in reported.err
+    assert 'violates its own motion or energy balance at t = ' in reported.err
     assert len(reported.err.splitlines()) == 1
 
 

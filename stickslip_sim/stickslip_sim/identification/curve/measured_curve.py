@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.arrays import Numbers
-from ...core.errors import InputError
+from ...core.errors import ALLOW, InputError
 from ...inputs.units import FORCES, SI_ALONE, SPEEDS, DriveUnits, in_si, named_unit, unit_of
 from ...scene.load import named, read_text
-from ...scene.plausible import FASTEST, MEANT, ROUGHEST
+from ...scene.plausible import FASTEST, ROUGHEST
 
 SLOWEST = 2e-4        # m/s: the fastest point of a plausible curve is faster
 SMOOTHEST = 1e-4      # a coefficient: the highest of a plausible curve is higher, but for hydrostatic guides
@@ -43,7 +43,7 @@ class FrictionCurve(NamedTuple):
         """Return the points that are forward or backward, or both; raises InputError where there is none."""
         those = {'forward': self.forward, 'backward': ~self.forward}.get(direction, np.full(self.forward.shape, True))
         if not those.any():
-            raise InputError('--direction', direction, 'one that there are points of', 'leave it out for all')
+            raise InputError('--direction', direction, 'a direction that has points', 'omit it to use all')
         return self._replace(speeds=self.speeds[those], coefficients=self.coefficients[those],
                              forward=self.forward[those],
                              spread=None if self.spread is None else self.spread[:, those])
@@ -95,13 +95,13 @@ def load_curve(path: str, units: Units, meant: tuple[str, ...] = ()) -> Friction
     with named(path):
         headings, points, columns = _read(text)
         if not points:
-            raise InputError(_WHAT, 'no point', 'lines of two numbers, a speed and its friction', 'the file has none')
+            raise InputError(_WHAT, 'no point', 'lines of two numbers, a speed and its friction', 'check the file')
         if len(points) > _MOST_POINTS:
             raise InputError(_WHAT, f'{len(points)} points', f'at most {_MOST_POINTS}', 'average points of one speed')
         _check_headings(headings, units)
         curve = _curve(points, units)
         if not curve.coefficients.any():
-            raise InputError(_WHAT, '0 all over', 'friction above 0', 'there is nothing to fit; look at the columns')
+            raise InputError(_WHAT, '0 all over', 'friction above 0', 'nothing to fit; check the columns')
         _check_plausible(curve, units, meant)
         return curve._replace(unread=columns - 2)
 
@@ -198,4 +198,4 @@ def _check_plausible(curve: FrictionCurve, units: Units, meant: tuple[str, ...])
         if not low <= most <= high and name not in meant and not (name == 'friction' and units.are_forces):
             raise InputError(f'the highest {name}', f'{most:g}{unit}',
                              f'plausible for a slideway, from {low:g} to {high:g}{unit}', f'it was read as {read}: '
-                             f'correct the unit, or if it is meant, add {MEANT} {name}')
+                             f'correct the unit, or if it is intended, add {ALLOW} {name}')

@@ -38,29 +38,32 @@ _MOVES, _GAINS = Moves(), Cascade()
 _FIELDS = BranchCompensation.__dataclass_fields__
 
 COMMON = (
-    Parameter('moves.travel', 'double', _MOVES.travel, 'm', 'of a move out, and back', _LEAST, 1e3),
-    Parameter('moves.feed', 'double', _MOVES.feed, 'm/s', 'of the moves', _LEAST, 1e3),
-    Parameter('moves.acceleration', 'double', _MOVES.acceleration, 'm/s²', 'up to the feed, and down', 1e-9, 1e6),
-    Parameter('moves.dwell', 'double', _MOVES.dwell, 's', 'at rest after each move', 0.0, 1e6),
-    Parameter('position_gain', 'double', _GAINS.position_gain, '1/s', 'K_v of the position loop', 0.0, 1e4, live=True),
-    Parameter('velocity_gain', 'double', _GAINS.velocity_gain, '', 'K_p of the velocity loop', 0.0, 1e4, live=True),
-    Parameter('integral_time', 'double', _GAINS.integral_time, 's', 'T_n of the velocity loop; .inf: no integral part',
-              1e-6, 1e6, infinite=True, live=True),
-    Parameter('max_velocity', 'double', 1.0, 'm/s', 'of the drive; commands stay within it, and the integral part does'
-              ' not wind up', 1e-9, 1e6),
-    Parameter('max_gap', 'double', 0.5, 's', 'between two measurements; after a longer one the moves begin anew', 1e-6,
+    Parameter('moves.travel', 'double', _MOVES.travel, 'm', 'Travel of each move, out and back.', _LEAST, 1e3),
+    Parameter('moves.feed', 'double', _MOVES.feed, 'm/s', 'Feed of the moves.', _LEAST, 1e3),
+    Parameter('moves.acceleration', 'double', _MOVES.acceleration, 'm/s²', 'Acceleration to and from the feed.', 1e-9,
               1e6),
+    Parameter('moves.dwell', 'double', _MOVES.dwell, 's', 'Rest after each move.', 0.0, 1e6),
+    Parameter('position_gain', 'double', _GAINS.position_gain, '1/s', 'Gain K_v of the position loop.', 0.0, 1e4,
+              live=True),
+    Parameter('velocity_gain', 'double', _GAINS.velocity_gain, '', 'Gain K_p of the velocity loop.', 0.0, 1e4,
+              live=True),
+    Parameter('integral_time', 'double', _GAINS.integral_time, 's', 'Integral time T_n of the velocity loop; .inf'
+              ' disables it.', 1e-6, 1e6, infinite=True, live=True),
+    Parameter('max_velocity', 'double', 1.0, 'm/s', 'Largest commanded drive velocity; the integrator does not wind up'
+              ' beyond it.', 1e-9, 1e6),
+    Parameter('max_gap', 'double', 0.5, 's', 'Longest gap between two measurements; after a longer one the moves'
+              ' restart.', 1e-6, 1e6),
     JOINT_PREFIX,
 )
 COMPENSATION = (
-    Parameter('compensation.model', 'string', 'positioning', '', 'scene, shipped or a file, whose axis is the model of'
-              ' spring and friction'),
-    Parameter('compensation.share', 'double', _FIELDS['share'].default, '', 'of the gap between the branches of'
-              ' friction that is crossed', 0.0, 1.0, live=True),
-    Parameter('compensation.rate', 'double', _FIELDS['rate'].default, '1/s', 'at which it is crossed', 0.0, 1e4,
+    Parameter('compensation.model', 'string', 'positioning', '', 'Scene, shipped or a file, whose axis models spring'
+              ' and friction.'),
+    Parameter('compensation.share', 'double', _FIELDS['share'].default, '', 'Share of the gap between the friction'
+              ' branches to compensate.', 0.0, 1.0, live=True),
+    Parameter('compensation.rate', 'double', _FIELDS['rate'].default, '1/s', 'Rate of crossing that gap.', 0.0, 1e4,
               live=True),
-    Parameter('compensation.threshold', 'double', _FIELDS['threshold'].default, 'm/s', 'error of the velocity from'
-              ' which on it acts in full', _LEAST, 1e3, live=True),
+    Parameter('compensation.threshold', 'double', _FIELDS['threshold'].default, 'm/s', 'Velocity error above which'
+              ' the compensation acts in full.', _LEAST, 1e3, live=True),
 )
 
 

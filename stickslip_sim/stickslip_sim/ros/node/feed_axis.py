@@ -48,7 +48,7 @@ class FeedAxis(HidingNode, SceneNode):
         scene = self.scene
         if scene.solver.name == 'adaptive':
             raise InputError('solver.name', 'adaptive', 'exact or fixed_step in the node',
-                             'the steps of adaptive take any time, and no real-time loop can wait for them')
+                             'a step of adaptive may take any time, too long for a real-time loop')
         warm_up(scene)
         self._slots = (CommandSlot('velocity', 'm/s', scene.command.max_velocity),
                        CommandSlot('force', 'N', scene.command.max_force))

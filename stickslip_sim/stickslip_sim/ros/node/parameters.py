@@ -129,7 +129,7 @@ def _stays(node: Node, parameter: Parameter, entry: Entry | None, now: object) -
     elif entry.live:
         return False
     else:
-        is_same, text = _is_same(entry, value, now), 'left out' if now is None else yaml_value(entry, now)
+        is_same, text = _is_same(entry, value, now), 'omitted' if now is None else yaml_value(entry, now)
     if not is_same:
         raise InputError(name, value, f'{text}, as at the start',
                          'it cannot change while the node runs: start the node with another')
@@ -143,7 +143,7 @@ def _is_same(entry: Entry, value: object, now: object) -> bool:
         return False
 
 
-_MEANT = Entry('meant', 'string_array', None, '', 'parameters of the scene whose values are meant, however unusual',
+_MEANT = Entry('meant', 'string_array', None, '', 'Scene parameters whose implausible values are intended.',
                live=True)
 _TYPES = {
     'double': Parameter.Type.DOUBLE, 'double_array': Parameter.Type.DOUBLE_ARRAY, 'string': Parameter.Type.STRING,
@@ -307,11 +307,10 @@ def checked_values(entries: Mapping[str, Entry], given: Mapping[str, object]) ->
 # The parameters that say how the kernel should treat the step thread; of the machine, and so no part of a scene.
 
 _ENTRIES = (
-    Entry('thread_priority', 'integer', 0, '', 'SCHED_FIFO priority of the thread that makes the steps; 0: none', 0,
-          99),
-    Entry('lock_memory', 'bool', False, '', 'whether all memory of the process is locked in RAM'),
-    Entry('require_real_time', 'bool', False, '', 'whether the node refuses to start when thread_priority, lock_memory'
-          ' or cpu_affinity is not granted'),
+    Entry('thread_priority', 'integer', 0, '', 'SCHED_FIFO priority of the step thread; 0 disables it.', 0, 99),
+    Entry('lock_memory', 'bool', False, '', 'Lock all memory of the process in RAM.'),
+    Entry('require_real_time', 'bool', False, '', 'Refuse to start unless thread_priority, lock_memory and'
+          ' cpu_affinity are granted.'),
 )
 _CORES = 'cpu_affinity'
 _ANY_CORE = -1
@@ -323,7 +322,7 @@ def scheduling_of(node: Node, given: Mapping[str, object], time: TimeSettings) -
     cores = cores_of(given.get(_CORES, _ANY_CORE))
     declare(node, _ENTRIES, values)
     node.declare_parameter(_CORES, list(cores) if len(cores) > 1 else next(iter(cores), _ANY_CORE), ParameterDescriptor(
-        description='core, or cores, of the thread that makes the steps; -1: any', read_only=True,
+        description='Core or cores of the step thread; -1: any.', read_only=True,
         dynamic_typing=True), ignore_override=True)
     _check_mode(values, time)
     return Scheduling(values['thread_priority'], values['lock_memory'], cores, values['require_real_time'])
@@ -334,7 +333,7 @@ def _check_mode(values: Mapping[str, Any], time: TimeSettings) -> None:
     if values['thread_priority'] and not time.is_paced:
         mode = f'time.mode: {time.mode}' + ('' if time.mode == 'lockstep' else ' and time.factor: .inf')
         raise InputError('thread_priority', values['thread_priority'], f'0 with {mode}',
-                         'steps that are due at once would never leave the core to others')
+                         'steps without waiting would never yield the core')
 
 
 def cores_of(value: object) -> tuple[int, ...]:

@@ -39,7 +39,7 @@ def order_topics(recording: Recording, wanted: Sequence[str]) -> dict[str, Topic
     kinds = {kind.type: kind for kind in (*COMMANDS, RIG_EVENT, PARAMETER_EVENTS)}
     found = {name: kinds[recording.topics[name].type] for name in wanted if recording.topics[name].type in kinds}
     if not any(kind in COMMANDS for kind in found.values()):
-        raise RecordingError(f'{recording.path}: no drive velocities and no forces in it; give a recording of an axis')
+        raise RecordingError(f'{recording.path}: neither drive velocities nor forces; give a recording of an axis')
     for kind in kinds.values():
         _check_single(kind, [name for name, its in found.items() if its is kind])
     return found
@@ -49,7 +49,7 @@ def state_topic(recording: Recording) -> str:
     """Return the one topic of states; raises RecordingError when there are none, InputError when there are more."""
     names = [name for name, topic in recording.topics.items() if topic.type == SLIDER_STATE.type]
     if not names:
-        raise RecordingError(f'{recording.path}: no states in it, so nobody knows its steps; replay it in real time')
+        raise RecordingError(f'{recording.path}: no states, so its steps are unknown; replay it in real time')
     _check_single(SLIDER_STATE, names)
     return names[0]
 
@@ -140,8 +140,8 @@ class InLockStep:
         """Return the step of a state; raises an error when it does not follow the one before."""
         step = state.sequence
         if step > last + 1 or (step <= last and step):
-            raise RecordingError(f'{self._recording.path}: step {last + 1} is missing; only a run that was recorded by'
-                                 ' the node, from its start on and without loss, can be repeated in lock-step')
+            raise RecordingError(f'{self._recording.path}: step {last + 1} is missing; only a complete run of the node,'
+                                 ' recorded from its start, can be repeated in lock-step')
         time = self._recording.simulation_time(state)
         if time != self._grid.nanoseconds(step):
             raise InputError('time.rate', self._grid.rate, f'that of the recording, whose step {step} ends at'
@@ -162,8 +162,8 @@ class InLockStep:
         if not answer.success:
             raise RecordingError(f'{self._axis.name} gave up: {answer.message}')
         if answer.state.step != self._made:
-            raise RecordingError(f'{self._axis.name} is at step {answer.state.step} instead of {self._made}: somebody'
-                                 ' else makes steps or resets it')
+            raise RecordingError(f'{self._axis.name} is at step {answer.state.step} instead of {self._made}: another'
+                                 ' client steps or resets it')
 
     def _give(self, message: RecordedMessage) -> None:
         kind = self._orders[message.topic]
@@ -188,7 +188,7 @@ class InLockStep:
     def _obey(self, request: Request) -> None:
         refusal = refusal_in(self._axis.ask(request.service, **request.fields))
         if refusal:
-            raise RecordingError(f'{self._axis.name} refused a recorded order: {refusal}')
+            raise RecordingError(f'{self._axis.name} refused a recorded command: {refusal}')
 
 
 # Recorded orders into an axis in real time: each when its time has come, as a controller would give it.
@@ -235,4 +235,4 @@ class InRealTime:
     def _look_at(self, response: object) -> None:
         refusal = refusal_in(response)
         if refusal:
-            self._log.warning(f'the axis refused a recorded order: {refusal}')
+            self._log.warning(f'the axis refused a recorded command: {refusal}')

@@ -16,19 +16,20 @@ from ...scene.parameter import Parameter
 STATES_MODE, COMMANDS_MODE = 'states', 'commands'
 
 REPLAY_PARAMETERS = (
-    Parameter('bag', 'string', '', '', 'folder of the run, or an .mcap file'),
-    Parameter('mode', 'string', STATES_MODE, '', 'states: all that was recorded, onto its topics; commands: the orders'
-              ' that the axis was given, into a live one', choices=(STATES_MODE, COMMANDS_MODE)),
-    Parameter('rate', 'double', 1.0, '', 'seconds of the recording per second', 0.0, 1e6, low_open=True, live=True),
-    Parameter('loop', 'bool', False, '', 'whether to begin anew at the end'),
-    Parameter('start_offset', 'double', 0.0, 's', 'of the recording that are left out at its start', 0.0, 1e9),
-    Parameter('playback_duration', 'double', -1.0, 's', 'of the recording that are played; -1: to its end', -1.0, 1e9),
-    Parameter('delay', 'double', 0.0, 's', 'before it is played, each time', 0.0, 1e6),
-    Parameter('start_paused', 'bool', False, '', 'whether to wait for ~/resume at the start'),
-    Parameter('clock', 'double', 0.0, 'Hz', 'how often /clock is published; 0: not at all', 0.0, 1e4),
-    Parameter('topics', 'string_array', (), '', 'which are played; left out: all'),
-    Parameter('axis', 'string', '', '', 'with mode: commands: the node that takes them; empty: feed_axis in the'
-              ' namespace of the recorded commands'),
+    Parameter('bag', 'string', '', '', 'Folder of the run, or its .mcap file.'),
+    Parameter('mode', 'string', STATES_MODE, '', 'states plays every recorded topic; commands sends the recorded'
+              ' commands to a live axis.', choices=(STATES_MODE, COMMANDS_MODE)),
+    Parameter('rate', 'double', 1.0, '', 'Speed: seconds of the recording per second.', 0.0, 1e6, low_open=True,
+              live=True),
+    Parameter('loop', 'bool', False, '', 'Start again at the end.'),
+    Parameter('start_offset', 'double', 0.0, 's', 'Time to skip at the start of the recording.', 0.0, 1e9),
+    Parameter('playback_duration', 'double', -1.0, 's', 'Time of the recording to play; -1: to its end.', -1.0, 1e9),
+    Parameter('delay', 'double', 0.0, 's', 'Wait before playing, each time.', 0.0, 1e6),
+    Parameter('start_paused', 'bool', False, '', 'Wait for ~/resume at the start.'),
+    Parameter('clock', 'double', 0.0, 'Hz', 'Rate of /clock; 0 does not publish it.', 0.0, 1e4),
+    Parameter('topics', 'string_array', (), '', 'Topics to play. Default: all.'),
+    Parameter('axis', 'string', '', '', 'Node that receives the commands of mode: commands; empty: feed_axis in'
+              ' the namespace of the recorded commands.'),
 )
 
 
@@ -57,7 +58,7 @@ class Settings:
         if settings.mode == COMMANDS_MODE and settings.clock:
             raise InputError('clock', settings.clock, '0 with mode: commands', 'the axis has the clock')
         if settings.mode == STATES_MODE and settings.axis:
-            raise InputError('axis', settings.axis, 'left out with mode: states', 'it is for mode: commands')
+            raise InputError('axis', settings.axis, 'omitted with mode: states', 'it belongs to mode: commands')
         return settings
 
 

@@ -32,7 +32,7 @@ def publisher_of(node: Node, topic: RecordedTopic) -> Any:
     installed = schema(topic.type)
     if topic.type_hash not in ('', installed.hash):
         raise InputError(topic.name, topic.type_hash, f'{installed.hash}, the hash of {topic.type} here',
-                         'it was recorded with another definition: use the version of then')
+                         'it was recorded with another definition: use the version that recorded it')
     with refusing('topic', topic.name, NameValidationException):
         return node.create_publisher(message_class(topic.type), topic.name, qos(_offered(topic.qos)))
 

@@ -44,7 +44,7 @@ def solver(method: str = 'DOP853', rtol: float = 1e-8, atol: float = 1e-10, kine
     """
     if method not in METHODS:
         raise InputError('solver.method', method, 'one of ' + ', '.join(METHODS) + ' with solver.name: adaptive',
-                         'DOP853 is the one to begin with')
+                         'start with DOP853')
     if not MIN_RTOL <= rtol <= 1e-2:
         raise InputError('solver.rtol', rtol, f'>= {MIN_RTOL:g} and <= 0.01', '1e-8 is the default')
     if not 1e-300 <= atol <= 1.0:
