@@ -91,9 +91,9 @@ def fig8_bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True, scope='module')
 def coarse_pictures(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Draw coarsely and without a layout, which is half of the cost, but where pictures are what is tested."""
+    """Draw coarsely and without a layout, which is half of the cost, except where pictures are what is tested."""
     with pytest.MonkeyPatch.context() as patch:
-        if request.path.parent.name not in ('plots', 'compare'):
+        if request.path.parent.name != 'plots':
             patch.setattr(ConstrainedLayoutEngine, 'execute', lambda *_: None)
             patch.setitem(JOURNAL, 'savefig.dpi', 50)
         yield

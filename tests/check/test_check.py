@@ -2,32 +2,43 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures that limits are set for: against closed forms and the events of the exact engine."""
 
+import json
 import math
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from stickslip_sim.bags import topics
 from stickslip_sim.check.limits import limits_of, outcomes_of
-from stickslip_sim.core.types import EventKind
+from stickslip_sim.core.types import EventKind, Sample
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.recording import RunFacts, read_run, write_bag
+from stickslip_sim.recording import BagWriter, RunFacts, read_run, write_bag
 from stickslip_sim.recording.reader import Bag
 from stickslip_sim.runs import samples, simulate
 from stickslip_sim.scene import scene_from_values
 from stickslip_sim.scene.ros_yaml import read_yaml
 from tests.support.check_files import (
     DECAY,
+    DURATION,
     FREE,
     FREQUENCY,
+    LIMITS,
     START_VELOCITY,
+    checked,
+    commanded_bag,
     free_position,
+    limits_file,
     measured,
+    node_bag,
     of_limits,
+    refused,
     simulated,
 )
+from tests.support.tool import Capture
 
 PEAK_TIME = math.atan2(FREQUENCY, DECAY) / FREQUENCY   # of the first swing; between two samples
 
@@ -165,7 +176,7 @@ def test_windows_and_targets_of_the_file_hold_for_limits_without_their_own() -> 
 
 # A check looks at a run block by block: the size of the blocks changes nothing, and no column is held whole.
 
-LIMITS = limits_of(read_yaml('''
+MANY_LIMITS = limits_of(read_yaml('''
 limits:
   following_error: {max: 1.0}
   error of a reference part: {check: following_error, max: 1.0, window: {begin: 0.7001, end: 0.7003}}
@@ -191,12 +202,233 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize('rows', [1, 777])
 def test_blocks_of_any_size_give_the_same_figures(bag: Path, monkeypatch: pytest.MonkeyPatch, rows: int) -> None:
-    expected = outcomes_of(LIMITS, read_run(bag))
+    expected = outcomes_of(MANY_LIMITS, read_run(bag))
     assert expected[-2].value
     monkeypatch.setattr(samples, 'GATHERED', rows)
-    assert outcomes_of(LIMITS, read_run(bag)) == expected
+    assert outcomes_of(MANY_LIMITS, read_run(bag)) == expected
 
 
 def test_no_column_of_a_recorded_run_is_held_whole(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(Bag, 'columns_of')
-    assert outcomes_of(LIMITS, read_run(bag))
+    assert outcomes_of(MANY_LIMITS, read_run(bag))
+
+
+# `stickslip check` on limits and runs that say nothing: one clear line.
+
+class TestRefusals:
+    @pytest.mark.parametrize(('text', 'words'), [
+        ('', ['file', 'limits']),
+        ('[1]', ['file', 'window, target, reference, commands, limits']),
+        ('limits:', ['line 1', 'missing']),
+        ('limits: {}', ['limits', 'at least one limit']),
+        ('limits: 3', ['limits = 3', 'at least one limit']),
+        ('limit: {sticks: {max: 1}}', ['limit', 'did you mean limits?']),
+        ('limits: {stick: {max: 1}}', ["'stick'", 'did you mean sticks?']),
+        ('limits: {mine: {max: 1}}', ["'mine'", 'following_error, end_position_error', 'check: sticks']),
+        ('limits: {mine: {check: stics, max: 1}}', ['mine.check', 'did you mean sticks?']),
+        ('limits: {mine: {check: 3, max: 1}}', ['mine.check = 3', 'one of']),
+        ('limits: {sticks: 3}', ['sticks = 3', '{max: 1.0e-3}']),
+        ('limits: {sticks: {maximum: 3}}', ['sticks.maximum = 3', 'one of check, max, window', 'did you mean max?']),
+        ('limits: {sticks: {}}', ['sticks.max', 'add it']),
+        ('limits: {sticks: {max: 1.5}}', ['sticks.max = 1.5', 'whole number']),
+        ('limits: {sticks: {max: -1}}', ['sticks.max = -1', '>= 0']),
+        ('limits: {sticks: {max: 1, max: 2}}', ['max is given twice']),
+        ('limits: {overshoot: {target: 0.1, max: .nan}}', ['overshoot.max = nan', '>= 0']),
+        ('limits: {overshoot: {target: 0.1, max: .inf}}', ['overshoot.max = inf', '<= 1e+12 m']),
+        ('limits: {overshoot: {target: 0.1, max: "1"}}', ["overshoot.max = '1'", 'without quotes']),
+        ('limits: {overshoot: {target: 0.1, max: 1 mm}}', ["overshoot.max = '1 mm'", 'a number']),
+        ('limits: {overshoot: {target: true, max: 1.0}}', ['overshoot.target = True', 'a number']),
+        ('limits: {overshoot: {max: 1.0}}', ['overshoot.target', 'add it']),
+        ('limits: {settling_time: {target: 0.0, max: 1.0}}', ['settling_time.band', '> 0']),
+        ('limits: {settling_time: {target: 0.0, band: 0.0, max: 1.0}}', ['settling_time.band = 0.0', '> 0']),
+        ('limits: {limit_cycle_amplitude: {cycles: 0, max: 1.0}}', ['cycles = 0', '>= 1']),
+        ('limits: {peak_speed: {target: 0.0, max: 1.0}}', ['peak_speed.target', 'one of check, max, window']),
+        ('limits: {timing: invalid}', ["timing = 'invalid'", 'valid']),
+        ('limits: {timing: {max: 1}}', ['timing', 'valid']),
+        ('limits: {timing: valid}', ['timing', 'the node recorded in real time', 'drop this limit']),
+        ('target: far\n' + LIMITS, ["target = 'far'", 'a number']),
+        ('window: 3\n' + LIMITS, ['window = 3', 'begin, end']),
+        ('window: {start: 3.0}\n' + LIMITS, ['window.start = 3.0', 'begin, end']),
+        ('window: {begin: 0.3, end: 0.3}\n' + LIMITS, ['window = [0.3, 0.3]', 'begin before end']),
+        ('window: {begin: -1.0}\n' + LIMITS, ['window.begin = -1.0', '>= 0']),
+        ('window: {end: 1.5}\n' + LIMITS, ['sticks.window.end = 1.5', '0 to 1.4 s']),
+        ('window: {begin: first_command}\n' + LIMITS, ['sticks.window.begin', 'no command is known']),
+        ('window: {end: first_command}\n' + LIMITS, ['window.end', 'a time in s', '{begin: first_command, end: 2.0}']),
+        ('window: {begin: first_comand}\n' + LIMITS, ['window.begin', 'or as the begin first_command']),
+        ('window: {end: 1.0}\nlimits: {sticks: {max: 1, window: {begin: first_command}}}',
+         ['sticks.window', 'an end of its own']),
+        ('commands: none\n' + LIMITS, ['commands', 'one of required, optional']),
+        ('window: {begin: 0.0001, end: 0.0002}\n' + LIMITS, ['window = [0.0001, 0.0002]', 'one sample']),
+        ('limits: {overshoot: {target: 0.0, max: 1.0}}', ['overshoot.target = 0.0', 'another place', 'begin before']),
+        ('reference: 3\n' + LIMITS, ['reference = 3', 'times, positions']),
+        ('reference: {times: [0.0]}\n' + LIMITS, ['reference.positions', 'add it']),
+        ('reference: {times: [0.0, 1.0], positions: [0.0]}\n' + LIMITS, ['reference.positions = [0.0]', '(2)']),
+        ('reference: {times: [1.0, 1.0], positions: [0.0, 1.0]}\n' + LIMITS, ['reference.times', 'increasing']),
+        ('reference: {times: [], positions: []}\n' + LIMITS, ['reference.times', 'at least one']),
+        ('limits: {"a\\nb": {check: sticks, max: 1}}', ['name', 'printable']),
+        ('limits: {sticks: {max: 1}', ['line 1']),
+        ('limits: &x {sticks: {max: 1}}\nwindow: *x', ['aliases']),
+    ])
+    def test_limits(self, text: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
+        path = limits_file(tmp_path, text)
+        line = refused(capsys, 'paper_fig7', '--duration', DURATION, '--limits', path, '--junit', tmp_path / 'c.xml')
+        for word in words:
+            assert word in line
+        assert [file.name for file in tmp_path.iterdir()] == ['limits.yaml']
+
+    def test_limits_that_are_no_text(self, tmp_path: Path, capsys: Capture) -> None:
+        (tmp_path / 'b.yaml').write_bytes(b'\xff\xfe\x00')
+        arguments = ['paper_fig7', '--duration', DURATION, '--limits']
+        assert 'is it a limits file?' in refused(capsys, *arguments, tmp_path / 'b.yaml')
+        assert 'Is a directory' in refused(capsys, *arguments, tmp_path)
+        assert 'No such file' in refused(capsys, *arguments, tmp_path / 'none.yaml')
+
+    @pytest.mark.parametrize(('arguments', 'words'), [
+        (['paper_fig7'], ['--duration S', 'check --help']),
+        (['paper_fig7', '--duration', '0'], ['duration = 0.0', '> 0']),
+        (['paper_fig7', '--duration', '1e9'], ['rows']),
+        (['paper_fig9', '--duration', '1'], ['paper_fig9', 'did you mean']),
+        (['no/such/folder', '--duration', '1'], ['folder', 'no such run']),
+        (['no_such.mcap'], ['no_such.mcap', 'no such run']),
+        (['paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass']),
+        (['paper_fig7', '--duration', '1', '--junit', '/dev/null/c.xml'], ['--junit', '/dev/null']),
+        (['paper_fig7', '--duration', '1', '--junit', '-', '--json', '-'], ['--json', '--junit']),
+        (['BAG', '--duration', '1'], ['--duration and --set', 'recorded']),
+        (['BAG', '--set', 'axis.mass=1.0'], ['--duration and --set', 'recorded']),
+    ])
+    def test_wrong_use(self, arguments: list[str], words: list[str], fig8_bag: Path, tmp_path: Path,
+                       capsys: Capture) -> None:
+        given = [str(fig8_bag) if argument == 'BAG' else argument for argument in arguments]
+        line = refused(capsys, *given, '--limits', limits_file(tmp_path, LIMITS))
+        for word in words:
+            assert word in line
+
+    @pytest.mark.parametrize('content', [b'', b'no bag at all, but long enough to look like one'])
+    def test_no_bag(self, content: bytes, tmp_path: Path, capsys: Capture) -> None:
+        (tmp_path / 'x.mcap').write_bytes(content)
+        assert 'x.mcap' in refused(capsys, tmp_path / 'x.mcap', '--limits', limits_file(tmp_path, LIMITS))
+
+    def test_a_bag_of_another_thing(self, tmp_path: Path, capsys: Capture) -> None:
+        limits = limits_file(tmp_path, LIMITS)
+        BagWriter(tmp_path / 'other', [topics.DIAGNOSTICS, topics.TIMING], {}, {}).close()
+        line = refused(capsys, tmp_path / 'other', '--limits', limits)
+        assert 'no topic of type stickslip_msgs/msg/SliderState' in line
+        cells = [*topics.recorded_topics('/a'), *topics.recorded_topics('/b')]
+        BagWriter(tmp_path / 'two', [topic for topic in cells if topic is not topics.PARAMETER_EVENTS], {}, {}).close()
+        assert 'are both of type' in refused(capsys, tmp_path / 'two', '--limits', limits)
+
+    def test_a_bag_without_states(self, tmp_path: Path, capsys: Capture) -> None:
+        BagWriter(tmp_path / 'empty', topics.recorded_topics(), {}, {}).close()
+        limits = limits_file(tmp_path, LIMITS)
+        assert 'no state of the axis' in refused(capsys, tmp_path / 'empty', '--limits', limits)
+
+    def test_a_bag_of_two_runs(self, tmp_path: Path, capsys: Capture) -> None:
+        scene = load_scene('paper_fig7')
+        rows: list[Sample] = [*simulate(scene, 0.01, scene.time.step).sample_rows()]
+        write_bag(tmp_path / 'two', RunFacts.of(scene), rows + rows, [], {})
+        assert 'time goes back' in refused(capsys, tmp_path / 'two', '--limits', limits_file(tmp_path, LIMITS))
+
+    @pytest.mark.parametrize('timing', [None, {'steps': 3}, {'valid': None, 'verdict': 'not in real time'}, 'good'])
+    def test_a_bag_without_a_verdict(self, timing: object, tmp_path: Path, capsys: Capture) -> None:
+        folder = node_bag(tmp_path / 'run', timing)
+        line = refused(capsys, folder, '--limits', limits_file(tmp_path, 'limits: {timing: valid}'))
+        assert 'only a run that the node recorded in real time' in line
+
+
+# `stickslip check` on runs of a controller that comes late, or never: no limit passes that did not see it.
+
+LATE = 1501                       # step that takes up the first command, at 1.5 s
+VERDICT = 'real-time valid: no, worst 12.00 ms at t = 0.2 s'
+FROM_COMMAND = 'window: {begin: first_command, end: 0.5}\n'
+
+
+@pytest.fixture(scope='module')
+def late(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return commanded_bag(tmp_path_factory.mktemp('runs') / 'late', {LATE: 0.01, 2101: 0.0}, 2500)
+
+
+@pytest.fixture(scope='module')
+def never(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return commanded_bag(tmp_path_factory.mktemp('runs') / 'never', {}, 500)
+
+
+def found(capsys: Capture, folder: Path, limits: Path, text: str) -> dict[str, Any]:
+    """Return what is measured by the name of the limit, with the first command as `first`."""
+    _, out, _ = checked(capsys, folder, '--limits', limits_file(limits, text), '--json', '-')
+    everything = json.loads(out)
+    return {'first': everything['run']['first_command'], **{entry['name']: entry for entry in everything['limits']}}
+
+
+class TestLate:
+    def test_limits_whose_window_ends_before_fail_and_say_so(self, late: Path, tmp_path: Path, capsys: Capture) -> None:
+        text = 'window: {end: 1.0}\nlimits: {sticks: {max: 9}, all: {check: peak_speed, max: 1.0, window: {end: 2.0}}}'
+        code, out, err = checked(capsys, late, '--limits', limits_file(tmp_path, text))
+        assert code == 3
+        assert 'first command at t = 1.5 s' in out.splitlines()[0]
+        assert 'FAIL  no drive velocity came until t = 1 s: no controller was checked' in out
+        assert out.splitlines()[-1] == 'FAILED: 1 of 2: sticks'
+        assert 'no drive velocity came within the window of sticks' in err
+        assert 'first_command' in err
+
+    def test_a_window_from_the_first_command_on(self, late: Path, tmp_path: Path, capsys: Capture) -> None:
+        """Its times count from there: the figures are those of the same run without the wait."""
+        prompt = commanded_bag(tmp_path / 'prompt', {1: 0.01, 601: 0.0}, 900)
+        text = ('target: 5.0e-3\nlimits:\n  settling_time: {band: 1.0e-3, max: 1.0}\n  following_error: {max: 1.0}\n'
+                '  later: {check: following_error, max: 1.0, window: {begin: 0.3}}\n'
+                '  sticks: {max: 9}\n')
+        expected = found(capsys, prompt, tmp_path, 'window: {end: 0.5}\n' + text)
+        counted = found(capsys, late, tmp_path, FROM_COMMAND + text)
+        assert (expected.pop('first'), counted.pop('first')) == (0.0, 1.5)
+        assert counted['settling_time']['window'] == {'begin': 1.5, 'end': 2.0}
+        assert counted['later']['window'] == {'begin': 1.8, 'end': 2.0}
+        for name, entry in expected.items():
+            assert counted[name]['measured'] == pytest.approx(entry['measured'], rel=1e-9), name
+
+    def test_the_reference_counts_from_there_too(self, late: Path, tmp_path: Path, capsys: Capture) -> None:
+        """The drive itself is such a reference: 10 mm/s from the first command on."""
+        limits = 'limits: {following_error: {max: 1.0}}'
+        reference = 'reference: {times: [0.0, 0.6], positions: [0.0, 6.0e-3]}\n'
+        of_drive = found(capsys, late, tmp_path, FROM_COMMAND + limits)['following_error']['measured']
+        counted = found(capsys, late, tmp_path, FROM_COMMAND + reference + limits)['following_error']['measured']
+        assert counted == pytest.approx(of_drive, rel=1e-9)
+
+    def test_a_run_that_ends_too_soon_after_it(self, late: Path, tmp_path: Path, capsys: Capture) -> None:
+        limits = limits_file(tmp_path, 'window: {begin: first_command, end: 2.0}\nlimits: {sticks: {max: 9}}')
+        line = refused(capsys, late, '--limits', limits)
+        assert 'sticks.window.end = 2.0 is refused: must be at most 1, the time in s that the run goes on after' in line
+
+
+class TestNever:
+    @pytest.mark.parametrize('window', ['', 'window: {begin: first_command}\n', 'window: {begin: 0.1, end: 0.2}\n'])
+    def test_nothing_passes(self, window: str, never: Path, tmp_path: Path, capsys: Capture) -> None:
+        limits = limits_file(tmp_path, window + 'limits: {sticks: {max: 9}, peak_speed: {max: 1.0}}')
+        code, out, err = checked(capsys, never, '--limits', limits)
+        assert (code, out.splitlines()[-1]) == (3, 'FAILED: 2 of 2: sticks, peak_speed')
+        assert 'no command' in out.splitlines()[0]
+        assert 'no drive velocity came within the window of sticks, peak_speed' in err
+
+    def test_unless_no_command_is_needed(self, never: Path, tmp_path: Path, capsys: Capture) -> None:
+        limits = limits_file(tmp_path, 'commands: optional\nlimits: {sticks: {max: 9}}')
+        code, out, _ = checked(capsys, never, '--limits', limits)
+        assert (code, out.splitlines()[-1]) == (0, 'PASSED: 1 of 1')
+
+    def test_a_run_of_the_tool_needs_none(self, tmp_path: Path, capsys: Capture) -> None:
+        assert checked(capsys, 'paper_fig7', '--duration', '0.1', '--limits',
+                       limits_file(tmp_path, 'limits: {sticks: {max: 9}}'))[0] == 0
+
+
+class TestVerdict:
+    def test_that_of_the_node_is_reported_without_being_asked_for(self, tmp_path: Path, capsys: Capture) -> None:
+        folder = commanded_bag(tmp_path / 'run', {1: 0.01}, 100, {'valid': False, 'verdict': VERDICT})
+        limits = limits_file(tmp_path, 'limits: {sticks: {max: 9}}')
+        code, out, _ = checked(capsys, folder, '--limits', limits)
+        assert (code, out.splitlines()[1]) == (0, VERDICT)
+        assert out.splitlines()[-1] == 'PASSED: 1 of 1, but the run is not valid in real time'
+        _, out, _ = checked(capsys, folder, '--limits', limits, '--json', '-')
+        assert json.loads(out)['run']['timing'] == {'valid': False, 'verdict': VERDICT}
+
+    def test_that_of_lock_step_too(self, tmp_path: Path, capsys: Capture) -> None:
+        verdict = 'not in real time (time.mode lockstep)'
+        folder = commanded_bag(tmp_path / 'run', {1: 0.01}, 100, {'valid': None, 'verdict': verdict})
+        code, out, _ = checked(capsys, folder, '--limits', limits_file(tmp_path, 'limits: {sticks: {max: 9}}'))
+        assert (code, out.splitlines()[1], out.splitlines()[-1]) == (0, verdict, 'PASSED: 1 of 1')

@@ -25,7 +25,6 @@ from stickslip_sim.core.types import EventKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.characteristics import plot_characteristics
 from stickslip_sim.plots.paper_panels import plot_motion
-from stickslip_sim.plots.style import JOURNAL
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.runs.report import named_apart
@@ -47,11 +46,9 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope='module')
 def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The report on three scenes of the paper; its PNG are coarse ones."""
+    """The report on three scenes of the paper."""
     folder = tmp_path_factory.mktemp('reports') / 'paper'
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(JOURNAL, 'savefig.dpi', 50)
-        assert run(['compare', 'paper_fig4_constant', 'paper_fig7', 'paper_fig8', '--out', str(folder)]) == 0
+    assert run(['compare', 'paper_fig4_constant', 'paper_fig7', 'paper_fig8', '--out', str(folder)]) == 0
     return folder
 
 

@@ -16,11 +16,24 @@ from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from tests.conftest import Program
-from tests.support.accounts import UNDAMPED, accounted, energy_of
 from tests.support.axes import COMPLIANT, RIGID, instant, paper_axis, random_axis
 
 SCENES = ('paper_fig4_constant', 'paper_fig4_falling', 'paper_fig7', 'paper_fig8', 'micro_feed', 'fast_feed',
           'positioning', 'cutting_force')
+
+
+UNDAMPED = CompliantContact(5e6, 0.0)
+
+
+def accounted(axis: Axis, drive: InputProfile, force: InputProfile | None = None,
+              initial: InitialState | None = None) -> Simulator:
+    return Simulator(axis, initial or InitialState(), drive, force or constant(0.0), accounting=True)
+
+
+def energy_of(simulator: Simulator) -> EnergyBalance:
+    energy = simulator.energy
+    assert energy is not None
+    return energy
 
 
 def random_run(seed: int) -> Simulator:

@@ -11,8 +11,8 @@ from tests.fuzz.targets import Target, targets
 
 pytestmark = pytest.mark.slow
 
-EXAMPLES = {'scene': 150, 'limits': 150, 'override': 150, 'bag': 75, 'distributions': 100, 'options': 100, 'study': 15,
-            'engine': 30, 'reference': 5}
+EXAMPLES = {'scene': 80, 'limits': 80, 'override': 80, 'bag': 40, 'distributions': 50, 'options': 50, 'study': 8,
+            'engine': 15, 'reference': 3}
 AT_EASE = settings(suppress_health_check=list(HealthCheck))
 
 

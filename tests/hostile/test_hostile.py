@@ -144,7 +144,7 @@ def without(good: Run, *gone: int) -> Run:
 
 
 def test_nothing_is_found_wrong() -> None:
-    found = one_round('slice', Counts(), list(GENERATORS), count=3, share=0.0)
+    found = one_round('slice', Counts(), list(GENERATORS), count=2, share=0.0)
     assert not found, '\n'.join(f'{one.generator}, {one.judge}: {one.text}' for one in found)
 
 

@@ -13,6 +13,7 @@ import pytest
 import yaml
 
 from dev.links import broken_links, missing_paths
+from dev.mutants import Mutant, mutants
 from tests.support.repository import ROOT
 
 pytestmark = pytest.mark.slow
@@ -134,3 +135,23 @@ def test_a_test_that_stands_still_or_kills_its_process_takes_no_other_with_it(tm
     for name in ENDS:
         assert f"crashed while running 'test_{name}.py::test_it'" in said
     assert f'{len(ENDS)} failed, {10 + 2 * len(ENDS)} passed' in said
+
+
+# The mutants of `make mutants` apply, and the tests that kill them are there.
+
+MUTANTS = mutants()
+
+
+def test_there_are_enough_of_them() -> None:
+    assert len(MUTANTS) >= 60
+    assert len({(one.file, one.name) for one in MUTANTS}) == len(MUTANTS)
+
+
+@pytest.mark.parametrize('mutant', MUTANTS, ids=lambda one: f'{one.file}: {one.name}')
+def test_a_mutant_applies_once_and_names_its_test(mutant: Mutant) -> None:
+    assert mutant.text is not None, f'{mutant.file} does not have exactly once: {mutant.old}'
+    assert mutant.new != mutant.old
+    compile(mutant.text, mutant.file, 'exec')
+    file, *names = mutant.test.partition('[')[0].split('::')
+    text = (ROOT / file).read_text(encoding='utf-8')
+    assert all(re.search(rf'\b(def|class) {name}\b', text) for name in names)

@@ -3,13 +3,14 @@
 """The container files against what they rely on; that they build and run is written in docs/docker.md."""
 
 import fnmatch
+import json
 import os
 import re
 import signal
 import subprocess
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 import yaml
@@ -17,7 +18,6 @@ import yaml
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.ros.controllers.controller_node import COMMON, COMPENSATION
 from stickslip_sim.scene.schema import BY_NAME
-from tests.support.dockerfiles import instructions, stages
 from tests.support.node_processes import executable
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import client
@@ -28,6 +28,36 @@ pytestmark = pytest.mark.slow
 
 KNOWN = {'sim_node': set(BY_NAME), 'compensating_controller': {entry.name for entry in (*COMMON, *COMPENSATION)}}
 ENTRYPOINT = '/opt/stickslip/docker/entrypoint'
+
+
+class Instruction(NamedTuple):
+    """One instruction, continued lines joined."""
+
+    name: str
+    text: str
+
+    @property
+    def words(self) -> list[str]:
+        """Its words; of the exec form the elements."""
+        exec_form = self.text[self.text.index('['):] if '[' in self.text else ''
+        return [str(word) for word in json.loads(exec_form)] if exec_form else self.text.split()
+
+
+def instructions(file: str) -> list[Instruction]:
+    lines = (ROOT / file).read_text(encoding='utf-8').splitlines()
+    text = '\n'.join(line for line in lines if not line.lstrip().startswith('#')).replace('\\\n', ' ')
+    return [Instruction(*line.split(maxsplit=1)) for line in text.splitlines() if line.strip()]
+
+
+def stages(file: str) -> list[list[Instruction]]:
+    """Return the instructions of each stage, from FROM on."""
+    found: list[list[Instruction]] = []
+    for instruction in instructions(file):
+        if instruction.name == 'FROM':
+            found.append([])
+        if found:
+            found[-1].append(instruction)
+    return found
 
 
 def in_context(path: str) -> bool:

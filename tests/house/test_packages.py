@@ -4,6 +4,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import zipfile
@@ -16,7 +17,6 @@ from catkin_pkg.package import parse_package
 
 from dev.changelog import PACKAGES, SOURCE, changelog, rst
 from stickslip_sim.core.version import __version__
-from tests.support.copied_package import copy_package
 from tests.support.repository import ROOT
 
 pytestmark = pytest.mark.slow
@@ -41,6 +41,12 @@ INSTALLATIONS = {
     'build farm': [sys.executable, 'setup.py', '-q', 'egg_info', '--egg-base', '..', 'build', '--build-base',
                    '../build', 'install', '--root', '../install', '--prefix', '/stickslip_sim'],
 }
+
+
+def copy_package(folder: Path) -> Path:
+    """Copy it, without what was built there; return the copy."""
+    built = shutil.ignore_patterns('build', '_hot*', '_text*', '_standstill*', '*.egg-info', '__pycache__')
+    return Path(shutil.copytree(ROOT / 'stickslip_sim', folder / 'sources', ignore=built))
 
 
 def done(*command: str | Path, folder: Path = ROOT, environment: dict[str, str] | None = None) -> str:

@@ -120,9 +120,9 @@ def breaks(load: InputProfile, until: float) -> list[float]:
     return [turn * load.period + start for turn in range(int(until / load.period) + 1) for start in load.starts]
 
 
-@pytest.mark.parametrize('axis', [paper_axis(RIGID), paper_axis(COMPLIANT)], ids=['rigid', 'compliant'])
-def test_more_digits_change_none_of_those_promised(axis: Axis) -> None:
+def test_more_digits_change_none_of_those_promised() -> None:
     """The remainder of the series is below the working precision: 20 digits more leave 30 as they are."""
+    axis = paper_axis(COMPLIANT)
     few, many = (simulate(axis, InitialState(), constant(0.002), constant(0.0), 1.1, digits, WILD).exact
                  for digits in (30, 50))
     assert len(few) == len(many) >= 6

@@ -58,6 +58,11 @@ class Cluster:
         self.address = str(json.loads(self.file.read_text())['address'])
         self.client = distributed.Client(self.address, set_as_default=False)
 
+    def need_worker(self) -> None:
+        """Start a worker unless one is left of another test: to import what it needs takes a second or two."""
+        if not self.client.scheduler_info()['workers']:
+            self.add_worker()
+
     def add_worker(self, **environment: str) -> None:
         self.workers.append(started('dask', 'worker', '--scheduler-file', self.file, '--no-nanny', '--nthreads', '1',
                                     '--no-dashboard', '--name', str(len(self.workers)), **environment))
@@ -93,35 +98,6 @@ def cluster(shared_cluster: Cluster) -> Iterator[Cluster]:
     """A scheduler that goes on; its workers end with the test."""
     yield shared_cluster
     shared_cluster.end_workers()
-
-
-def test_a_worker_killed_in_the_middle_changes_no_bit_and_ctrl_c_keeps_what_is_done(cluster: Cluster, tmp_path: Path
-                                                                                    ) -> None:
-    cluster.add_worker()
-    cluster.add_worker()
-    out, alone = tmp_path / 'out', tmp_path / 'alone'
-    process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', out)
-    wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
-    wait_until(lambda: cluster.is_at_work(0), 'a worker at work')
-    cluster.workers[0].send_signal(signal.SIGKILL)
-    said, error = process.communicate(timeout=_PATIENCE)
-    assert (process.returncode, error) == (0, ''), error
-    assert '10000 of them run now' in said
-    assert run([*LONG, '--out', str(alone)]) == 0
-    whole = (alone / POINTS_TABLE).read_bytes()
-    assert (out / POINTS_TABLE).read_bytes() == whole
-
-    left = tmp_path / 'left'
-    process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', left)
-    wait_until(lambda: (left / PARTIAL).exists() and (left / PARTIAL).stat().st_size > 1000, 'the first chunk')
-    process.send_signal(signal.SIGINT)
-    said, error = process.communicate(timeout=_PATIENCE)
-    assert process.returncode == 130, error
-    assert (said, error.count('\n')) == ('', 1)
-    rows = (left / PARTIAL).read_bytes()
-    assert whole.startswith(rows)
-    assert rows.count(b'\n') % 2000 == 1
-    wait_until(lambda: not cluster.is_at_work(1), 'a worker that is free again')
 
 
 def test_a_worker_without_this_package_is_reported(cluster: Cluster, tmp_path: Path, capsys: Capture) -> None:
@@ -199,16 +175,49 @@ def test_workers_and_a_scheduler_exclude_each_other(tmp_path: Path, capsys: Capt
     assert 'exclude each other' in capsys.readouterr().err
 
 
-def test_closed_loops_on_a_cluster_have_the_bytes_of_one_process(cluster: Cluster, tmp_path: Path) -> None:
+# Those that follow share their workers.
+
+
+def test_a_worker_killed_in_the_middle_changes_no_bit_and_ctrl_c_keeps_what_is_done(shared_cluster: Cluster,
+                                                                                    tmp_path: Path) -> None:
+    cluster = shared_cluster
+    cluster.add_worker()
+    cluster.add_worker()
+    out, alone = tmp_path / 'out', tmp_path / 'alone'
+    process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', out)
+    wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')
+    wait_until(lambda: cluster.is_at_work(0), 'a worker at work')
+    cluster.workers[0].send_signal(signal.SIGKILL)
+    said, error = process.communicate(timeout=_PATIENCE)
+    assert (process.returncode, error) == (0, ''), error
+    assert '10000 of them run now' in said
+    assert run([*LONG, '--out', str(alone)]) == 0
+    whole = (alone / POINTS_TABLE).read_bytes()
+    assert (out / POINTS_TABLE).read_bytes() == whole
+
+    left = tmp_path / 'left'
+    process = started('stickslip_sim', *LONG, '--scheduler', cluster.address, '--out', left)
+    wait_until(lambda: (left / PARTIAL).exists() and (left / PARTIAL).stat().st_size > 1000, 'the first chunk')
+    process.send_signal(signal.SIGINT)
+    said, error = process.communicate(timeout=_PATIENCE)
+    assert process.returncode == 130, error
+    assert (said, error.count('\n')) == ('', 1)
+    rows = (left / PARTIAL).read_bytes()
+    assert whole.startswith(rows)
+    assert rows.count(b'\n') % 2000 == 1
+    wait_until(lambda: not cluster.is_at_work(1), 'a worker that is free again')
+
+
+def test_closed_loops_on_a_cluster_have_the_bytes_of_one_process(shared_cluster: Cluster, tmp_path: Path) -> None:
     controller, limits = tmp_path / 'own.py', tmp_path / 'limits.yaml'
     controller.write_text('class Own:\n    def __init__(self, gain=5.0):\n        self.gain = gain\n'
                           '    def __call__(self, t, measured):\n'
                           '        return self.gain * (1e-4 - measured.slider_position)\n')
     limits.write_text('limits: {peak_speed: {max: 1.0}}\n')
-    command = ['close-loop', f'{controller}:Own', '--scene', 'positioning', '--duration', '0.3', '--gain',
+    command = ['close-loop', f'{controller}:Own', '--scene', 'positioning', '--duration', '0.1', '--gain',
                'gain=2:20:3', '--over', 'friction.scale=0.8:1.2:4', '--limits', str(limits)]
-    cluster.add_worker()
-    assert run([*command, '--scheduler', cluster.address, '--out', str(tmp_path / 'out')]) == 0
+    shared_cluster.need_worker()
+    assert run([*command, '--scheduler', shared_cluster.address, '--out', str(tmp_path / 'out')]) == 0
     assert run([*command, '--out', str(tmp_path / 'alone')]) == 0
     tables = [(tmp_path / name / POINTS_TABLE).read_bytes() for name in ('out', 'alone')]
     assert tables[0] == tables[1]
@@ -218,7 +227,7 @@ def test_closed_loops_on_a_cluster_have_the_bytes_of_one_process(cluster: Cluste
 def test_a_scheduler_that_goes_is_reported(shared_cluster: Cluster, tmp_path: Path) -> None:
     """The last one that uses it."""
     out = tmp_path / 'out'
-    shared_cluster.add_worker()
+    shared_cluster.need_worker()
     process = started('stickslip_sim', *LONG, '--scheduler', shared_cluster.address, '--out', out,
                       DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT='1s')
     wait_until(lambda: (out / PARTIAL).exists() and (out / PARTIAL).stat().st_size > 1000, 'the first chunk')

@@ -188,7 +188,7 @@ class LockStep:
 
 @pytest.mark.parametrize('kind', NAMES)
 def test_in_lock_step_it_is_the_loop_of_the_benchmark_to_the_last_bit(kind: str) -> None:
-    steps = 400
+    steps = 150
     offline = close_loop(controllers()[kind], Moves(), 0.001 * (steps + 1))
     arguments = ['-r', 'joint_commands:=answers', 'use_sim_time:=true']
     with running(*BENCH, 'time.mode:=lockstep'), client() as axis, \

@@ -12,6 +12,7 @@ import pytest
 
 from stickslip_sim.axis import Axis, InitialState, pack
 from stickslip_sim.axis.layout import NORMAL
+from stickslip_sim.axis.state_record import STATE_PLACES
 from stickslip_sim.cli.main import run as tool
 from stickslip_sim.core.errors import UnsoundError
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant
@@ -21,9 +22,20 @@ from stickslip_sim.proof.axes import COMPLIANT, RIGID, Contact, instant, paper_a
 from stickslip_sim.runs.batch import figures_in, new_rows
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, exact
-from tests.support.states import scale_number, set_number
 
 Doctor = Callable[[Any], None]
+
+
+def set_number(state: Any, place: str, number: float) -> None:
+    """Set a number of a state, as `next.time`."""
+    numbers = state.numbers()
+    numbers[STATE_PLACES.index(place)] = number
+    state.take(numbers)
+
+
+def scale_number(state: Any, place: str, factor: float) -> None:
+    """Multiply a number of a state."""
+    set_number(state, place, factor * state.numbers()[STATE_PLACES.index(place)])
 
 
 def doctored(change: Doctor, mode: Mode | None = None) -> Solver:
