@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The code and the commands of the pages that take seconds, run as they stand there, give what the pages say."""
 
+import json
 import re
 import shlex
 from collections.abc import Mapping
@@ -10,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from benchmarks import worked_axis
 from benchmarks.identification import COMMANDS, EXAMPLES, FAILS, TRUTH
 from benchmarks.loop_pictures import PICTURES as LOOP_PICTURES
 from benchmarks.loop_pictures import blocks, page_commands, write_inputs
@@ -24,8 +26,9 @@ from tests.support.tool import Capture, answered
 pytestmark = pytest.mark.slow
 
 README = (ROOT / 'README.md').read_text(encoding='utf-8')
-MAPS, IDENTIFICATION, PYTHON, CLOSED_LOOP = ((ROOT / 'docs' / f'{name}.md').read_text(encoding='utf-8')
-                                             for name in ('maps', 'identification', 'python', 'closed_loop'))
+MAPS, IDENTIFICATION, PYTHON, CLOSED_LOOP, WORKED = (
+    (ROOT / 'docs' / f'{name}.md').read_text(encoding='utf-8')
+    for name in ('maps', 'identification', 'python', 'closed_loop', 'worked_axis'))
 
 
 @pytest.fixture(autouse=True)
@@ -155,3 +158,29 @@ class TestIdentification:
             before = start[name]
             assert isinstance(before, float)
             assert found / begun == pytest.approx(TRUTH[name] / before, rel=0.005), name
+
+
+@pytest.mark.usefixtures('blank_pictures')
+def test_the_worked_axis(clone: Path, capsys: Capture) -> None:
+    """From the exports on: what is exact stands as it is printed; what is fitted is near it, and near the truth."""
+    worked_axis.data()
+    said = {name: done(capsys, command) for name, command in worked_axis.steps()}
+    for name in ('import', 'plot', 'friction'):
+        assert quoted(said[name]) in part_of(WORKED, name), name
+    printed = part_of(WORKED, 'identify')
+    there, here = TestIdentification().found_in(printed), TestIdentification().found_in(said['identify'])
+    report = json.loads((clone / worked_axis.RUNS / 'found/report.json').read_text(encoding='utf-8'))
+    assert report['fits']
+    found = {one['name']: one['value'] for one in report['estimates']}
+    for name, value in worked_axis.TRUTH.items():
+        assert found[name] == pytest.approx(value, rel=0.01), name
+    assert set(here) == set(there) == set(found)
+    assert found['sensor.drive_force.offset'] == pytest.approx(0.01 * worked_axis.OFFSET * worked_axis.RATED, rel=0.1)
+    assert found['sensor.position.delay'] == pytest.approx(worked_axis.DELAY, rel=0.02)
+    assert [run['own']['friction.scale'] for run in report['alone']] == pytest.approx(
+        [worked_axis.DRIFT[1], worked_axis.DRIFT[2]], rel=2e-3)
+    for name in ('predict', 'drifted'):
+        rows = [re.findall(r'(?:position|spring)  .*', text) for text in (said[name], part_of(WORKED, name))]
+        assert len(rows[0]) == 2, name
+        numbers = [[float(number) for row in one for number in re.findall(r'[\d.]+', row)] for one in rows]
+        assert numbers[0] == pytest.approx(numbers[1], rel=0.05), name

@@ -11,6 +11,8 @@ import pytest
 import stickslip_sim as stickslip
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE, VOID, Estimate, RunAlone
+from stickslip_sim.identification.identified_scene import number_words
+from stickslip_sim.identification.report import result_lines
 from stickslip_sim.identification.several_runs import disagreements
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import scene_from_values
@@ -49,6 +51,8 @@ def test_springs_and_feeds_of_two_runs_share_their_friction(tmp_path: Path) -> N
     assert found.values[STIFFNESS] == pytest.approx(2e5, rel=2e-3)
     assert [run.own[STIFFNESS] for run in found.alone] == pytest.approx([2e5, 3e5], rel=2e-3)
     assert found.disagreements == ()
+    assert [line for line in result_lines(found, 'one and two') if line.startswith(f'{STIFFNESS}:')] == [
+        f'{STIFFNESS}: ' + ', '.join(f'{number_words(run.own[STIFFNESS], "N/m")} in {run.run}' for run in found.alone)]
     (second,) = found.predictions
     assert second.notes[0] == 'it was fitted, too: no test of the scene'
     assert second.channels[0].fit_percent > 99.9

@@ -359,6 +359,10 @@ DRIVES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
     'startdrive': ('\ufeffFormat;Trace\r\nSampling time;1 ms\r\n\r\nTime [ms];r62 [rpm];r80 M_act [Nm];x [LU]\r\n'
                    + lines('{0};1,5;{2};{1};;\r\n', str, comma, lambda force: comma(force / 100.0)),
                    {'time': 'Time', 'position': 'x', 'drive_force': 'r80 M_act'}, {'position': 'mm'}),
+    'rated': ('Sampling;1 ms\n\nTime;Pos;Torque\nms;mm;% rated\n' + lines('{};{};{}\n', str, comma, comma),
+              {'time': 'Time', 'position': 'Pos', 'drive_force': 'Torque'}, {}),
+    'of rated': ('Time [ms];Pos [mm];Torque [% of rated torque]\n' + lines('{};{};{}\n', str, comma, comma),
+                 {'time': 'Time', 'position': 'Pos', 'drive_force': 'Torque'}, {}),
     'twincat 3': ('Name\tScope\nFile\tx.svdx\n\nName\tPos\tPos\tM\tM\nData-Type\tREAL64\tREAL64\tINT16\tINT16\n'
                   'SampleTime[ms]\t1\t1\t1\t1\n' + lines('{0}\t{1}\t{0}\t{2}\t\n', str, comma, str) + 'EOF\n',
                   {'time': '1', 'position': '2', 'drive_force': '4'},
@@ -369,7 +373,8 @@ DRIVES: dict[str, tuple[str, dict[str, str], dict[str, str]]] = {
     'heidenhain': ('TNCscope V3\n\nZeit;Lage X;Strom X\n[ms];[mm];[A]\n' + lines('{};{};{};\n', str, comma, comma),
                    {'time': 'Zeit', 'position': 'Lage X', 'drive_force': 'Strom X'}, {'drive_force': '35.15 N'}),
 }
-SCALES = {'startdrive': 2.0 * np.pi, 'twincat 3': 8.0, 'rigol': -1.0, 'heidenhain': 35.15}
+SCALES = {'startdrive': 2.0 * np.pi, 'rated': 8.0, 'of rated': 8.0, 'twincat 3': 8.0, 'rigol': -1.0,
+          'heidenhain': 35.15}
 
 
 @pytest.mark.parametrize('name', DRIVES)

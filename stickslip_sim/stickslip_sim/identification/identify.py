@@ -347,7 +347,8 @@ def _of_several(names: Sequence[str], problems: Sequence[FitProblem], ends: Sequ
     return replace(
         found, misfits=tuple(misfits), estimates=tuple(map(_void, found.estimates)) if misfits else found.estimates,
         cost=cost, n_residuals=sum(one.n_residuals for one in alone), runs=sum(one.model.runs for one in problems),
-        notes=(*found.notes, f'{len(names)} runs share one scene; pictures and numbers of its own are of {names[0]}'),
+        notes=(*found.notes, f'{len(names)} runs share one scene; pictures, slips and the numbers that differ by run '
+               f'are those of {names[0]}'),
         alone=said, disagreements=tuple(apart))
 
 

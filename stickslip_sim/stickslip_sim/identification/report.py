@@ -63,6 +63,7 @@ def result_lines(found: Identification, run: str) -> Iterator[str]:
         yield f'{one.name:{_NAME}}{start:>{_NUMBER}}{value:>{_NUMBER}}   {interval_words(one)}{kind}'
     yield from (f'not separated: {together.statement}' for together in found.combinations)
     yield from found.disagreements
+    yield from _own_lines(found)
     yield from _slip_lines(found)
     yield from _law_lines(found)
     yield from text_lines(part for one in found.predictions for part in prediction_parts(one, one.run))
@@ -165,6 +166,15 @@ def _alone(found: Identification) -> Iterator[str]:
         rows.append(['fits alone', *('yes' if run.fits else 'no' for run in found.alone)])
         yield html_table('Each run on its own', ['', *(run.run for run in found.alone)], rows)
         yield from (f'<p class="fails">{escape(one)}</p>' for one in found.disagreements)
+        yield from (f'<p>{escape(one)}</p>' for one in _own_lines(found))
+
+
+def _own_lines(found: Identification) -> Iterator[str]:
+    """Yield the numbers of the scene that each run has of its own in the fit of all."""
+    for one in found.estimates if found.alone else ():
+        if one.name in found.alone[0].own and not one.name.startswith(('sensor.', 'initial.')):
+            yield f'{one.name}: ' + ', '.join(f'{number_words(run.own[one.name], one.unit)} in {run.run}'
+                                              for run in found.alone)
 
 
 def _open(found: Identification) -> Iterator[str]:

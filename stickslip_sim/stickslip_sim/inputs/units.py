@@ -38,6 +38,7 @@ STIFFNESSES: Mapping[str, Fraction] = {'N/m': Fraction(1), 'kN/m': Fraction(1000
 
 # What turns, by the SI unit of what it moves; a lead (m a turn) converts it.
 PERCENT = '%'
+_RATED = re.compile(r'% *(?:of )?(?:the )?(?:rated|nominal)\b.*')    # "% rated", "% of rated torque"
 _TURN = Fraction(2.0 * math.pi)
 _TURNS = {'rad': 1 / _TURN, 'mrad': 1 / (1000 * _TURN), 'deg': Fraction(1, 360), 'rev': Fraction(1)}
 _ROTARY: Mapping[str, Mapping[str, Fraction]] = {
@@ -85,7 +86,7 @@ def stated(option: str, text: str, units: Mapping[str, Fraction]) -> float:
 
 def unit_of(option: str, word: str, units: Mapping[str, Fraction]) -> str:
     """Return a unit as it is spelled here; raises InputError on one that is not known."""
-    found = word.strip().replace('µ', 'u').replace('μ', 'u')
+    found = _RATED.sub(PERCENT, word.strip().replace('µ', 'u').replace('μ', 'u'))
     if found in units:
         return found
     close = difflib.get_close_matches(found, units, 1)
@@ -177,7 +178,8 @@ def unit_in(heading: str, units: Mapping[str, Fraction]) -> str | None:
     for word, unit in _ALIKE.items():
         words = words.replace(word, unit)
     found = _IN_BRACKETS.search(words)
-    endings = [found[1]] if found else [words, re.split(r'[ _]', words)[-1]]
+    words = _RATED.sub(PERCENT, words if found is None else found[1])
+    endings = [words] if found else [words, re.split(r'[ _]', words)[-1]]
     return next((unit for unit in endings if unit in units and (found or unit != 'in')), None)
 
 

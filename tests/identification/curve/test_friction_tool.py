@@ -62,6 +62,9 @@ def test_forces_of_both_directions(tmp_path: Path, capsys: Capture) -> None:
     assert code == 0
     assert '16 points, 8 forward and 8 backward' in out
     assert 'the directions differ' in out
+    forces.write_text(''.join(forces.read_text().splitlines(keepends=True)[:10]))   # one of them backward
+    out = answered(capsys, 'friction', forces, '--speed-unit', 'm/min', '--force-unit', 'N', '--normal-force', '800')[1]
+    assert re.search(r'^backward +0\.\d{4} of the curve, mean of 1 point$', out, re.MULTILINE), out
 
 
 def test_each_direction_gets_its_own_curve(tmp_path: Path, capsys: Capture) -> None:

@@ -182,10 +182,12 @@ def _fit_lines(fits: Fits) -> list[str]:
                      f'{fit.criterion:10.1f}{fit.criterion - best.criterion:12.1f}')
     lines += [f'{name:12}{"":11} not fitted: AICc wants {SPARE} points more than a law has parameters, and as many '
               'speeds' for name in fits.left_out]
-    lines += [f'best: {best.name}, by the lowest AICc, n ln(SSE/n) + 2k + 2k(k+1)/(n-k-1); k counts the parameters '
-              'and the variance']
+    among = ' of those that follow the points' if fits.passed_over else ''
+    lines += [f'best: {best.name}, by the lowest AICc{among}, n ln(SSE/n) + 2k + 2k(k+1)/(n-k-1); k counts the '
+              'parameters and the variance']
     if fits.passed_over:
-        lines.append(f'not best, for all its lower AICc: {", ".join(fits.passed_over)}; its rms residual is above '
+        whose, left = ('its', 'residual is') if len(fits.passed_over) == 1 else ('their', 'residuals are')
+        lines.append(f'not best, for all {whose} lower AICc: {", ".join(fits.passed_over)}; {whose} rms {left} above '
                      f'{100.0 * MISSED:.0f} % of the range of the points')
     if len(best.curve.speeds) < _ENOUGH:
         lines.append(f'fewer than {_ENOUGH} points: the criterion then favours laws of few parameters'
@@ -211,9 +213,9 @@ def _fitted_law_lines(fit: Fit, are_forces: bool) -> list[str]:
         verdict = 'a pattern that this law misses' if signs.chance < _PATTERN else 'no pattern'
         lines.append(f'{"residuals":22} {few}; noise has as few in {100.0 * signs.chance:.3g} % of cases: {verdict}')
     both = sides(fit)
-    lines += [f'{side.name:22} {side.ratio:.4f} ± {side.error:.4f} of the curve, mean of {side.points} points'
-              for side in both]
-    if any(abs(side.ratio - 1.0) > _DIFFER * side.error for side in both):
+    lines += [f'{side.name:22} {side.ratio:.4f}' + (f' ± {side.error:.4f}' if side.points > 1 else '')
+              + f' of the curve, mean of {counted(side.points, "point")}' for side in both]
+    if any(side.points > 1 and abs(side.ratio - 1.0) > _DIFFER * side.error for side in both):
         lines.append('the directions differ: fit each by itself, --direction each')
     return lines + _rest_lines(fit) + _miss_lines(fit)
 
