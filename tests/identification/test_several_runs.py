@@ -103,6 +103,13 @@ def test_intervals_that_do_not_meet_are_a_disagreement(second: RunAlone, is_said
         assert ('which it does not fit' in said[0]) == (not second.fits)
 
 
+@pytest.mark.parametrize('name', ['friction.scale', 'friction.kinetic.exponent'])
+def test_a_scale_or_an_exponent_is_no_force(name: str) -> None:
+    runs = [replace(run, estimates=(replace(run.estimates[0], name=name),))
+            for run in (alone('first', 0.18, 0.171, 0.189), alone('two', 0.2075, 0.203, 0.212))]
+    assert next(disagreements(runs, (), 100.0)).startswith(f'{name}: 0.18 [0.171, 0.189] in first, 0.2075 [0.203')
+
+
 def test_what_each_run_has_of_its_own_is_no_disagreement() -> None:
     assert [*disagreements([alone('first', 0.18, 0.1, 0.3), alone('other', 0.18, 0.1, 0.3)], (), None)] == []
 

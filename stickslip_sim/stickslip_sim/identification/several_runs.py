@@ -6,6 +6,7 @@ Each run is fitted alone first.  Then the residuals of all are fitted at once, t
 inflation: one whose residuals are larger than its noise, or go together, says less.
 """
 
+import re
 from collections.abc import Container, Iterator, Sequence
 from typing import NamedTuple
 
@@ -22,7 +23,7 @@ from .residual_tests import inflation_of
 from .stages import Ended
 
 _STEPS = 60
-_FRICTION = 'friction.'
+_COEFFICIENT = re.compile(r'friction\..*\.(initial|limit|coefficients\[\d+\])')    # a scale or an exponent is no force
 
 
 class RunFit(NamedTuple):
@@ -148,7 +149,7 @@ def disagreements(alone: Sequence[RunAlone], each: Container[str], normal_force:
         said = [(run, one, ends) for run in alone for one in run.estimates
                 if one.name == name and (ends := _interval(one)) is not None]
         if said and max(ends[0] for *_, ends in said) > min(ends[1] for *_, ends in said):
-            force = normal_force if name.startswith(_FRICTION) and said[0][1].unit == '' else None
+            force = normal_force if _COEFFICIENT.fullmatch(name) else None
             words = ', '.join(f'{_words(one, ends, force)} in {run.run}{"" if run.fits else " (which it does not fit)"}'
                               for run, one, ends in said)
             yield f'{name}: {words}: they disagree by more than their intervals'
