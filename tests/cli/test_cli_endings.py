@@ -73,7 +73,7 @@ def test_an_existing_bag_folder_is_refused_before_the_work(tmp_path: Path, capsy
 
 def test_unwritable_folder(capsys: Capture) -> None:
     """In /sys not even root can make a file."""
-    assert 'written' in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/sys/e.csv')
+    assert 'writable' in refused(capsys, 'simulate', 'paper_fig7', '--duration', '1', '--events', '/sys/e.csv')
 
 
 def test_a_full_disk_gets_one_line(capsys: Capture) -> None:
@@ -196,7 +196,7 @@ def test_what_a_command_reads_is_not_what_it_writes(tmp_path: Path, capsys: pyte
             (['friction', str(curve), '--speed-unit', 'mm/s', '--out', str(scene), '--scene', str(scene)], scene)):
         before = read.read_bytes()
         assert run(arguments) == 2
-        assert 'must be another place than that of' in capsys.readouterr().err
+        assert 'must be a different file than' in capsys.readouterr().err
         assert read.read_bytes() == before
     assert run(['simulate', 'paper_fig7', '--duration', '1', '--samples', str(curve)]) == 0   # a file of no other use
 

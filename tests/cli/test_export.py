@@ -63,7 +63,7 @@ class TestCsv:
         assert 'no recorded run there' in refused(capsys, 'export', tmp_path, '--csv', '-')
         assert 'in a folder; ' in refused(capsys, 'export', fig8_bag, '--csv', Path(__file__) / 'x.csv')
         place = tmp_path / 'x'
-        assert 'another place' in refused(capsys, 'export', fig8_bag, '--csv', place, '--parquet', place)
+        assert 'a different file' in refused(capsys, 'export', fig8_bag, '--csv', place, '--parquet', place)
         assert list(tmp_path.iterdir()) == []
 
     def test_the_folder_of_an_output_is_made(self, fig8_bag: Path, tmp_path: Path) -> None:

@@ -324,4 +324,4 @@ def test_the_verb_writes_a_folder_and_judges(source: Path, limits: str, tmp_path
     assert (code, again.splitlines()[1:-1]) == (3, out.splitlines()[1:-1])
     assert '0 run now' in again
     assert 'a folder that does not exist' in refused(capsys, *given, '--out', tmp_path / 'out')
-    assert 'many points' in refused(capsys, *given[:8], '--samples', '4')
+    assert 'needs --over' in refused(capsys, *given[:8], '--samples', '4')

@@ -127,7 +127,7 @@ def test_an_existing_folder_stays(fig8_bag: Path, tmp_path: Path, capsys: Captur
     assert list(tmp_path.iterdir()) == []
     (tmp_path / 'file').touch()
     assert run(['compare', str(fig8_bag), '--out', str(tmp_path / 'file' / 'where')]) == 2
-    assert f'in a folder; {tmp_path / "file"} is none' in capsys.readouterr().err
+    assert f'in a folder; {tmp_path / "file"} is not a folder' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(('arguments', 'word'), [

@@ -135,7 +135,7 @@ def test_the_cycles_of_a_diagram_are_the_last_of_the_whole_run(over: str, monkey
     (['--out', 'map.jpg'], '.png'), (['--out', 'map.png', '--show', 'colour'], 'amplitude'),
     (['--out', 'map.png', '--pick', '1'], '--pick'), (['--out', 'map.png', '--pick', '1,2'], '--pick'),
     (['--out', 'map.png', '--pick', 'a,b'], '--pick'), (['--out', 'map.png', '--pick', 'nan,6e5'], '--pick'),
-    (['--out', '/dev/null/map.png'], '/dev/null'), (['--out', 'map.png', '--out', 'map.png'], 'another place'),
+    (['--out', '/dev/null/map.png'], '/dev/null'), (['--out', 'map.png', '--out', 'map.png'], 'a different file'),
     (['--out', 'map.png', *['--pick', '0.002,6e5'] * 7], 'at most 6')])
 def test_a_map_that_cannot_be_is_refused(swept: Path, arguments: list[str], said: str, tmp_path: Path, capsys: Capture,
                                          monkeypatch: pytest.MonkeyPatch) -> None:

@@ -214,7 +214,7 @@ def _check_folder(option: str, path: str, folder: Path) -> None:
     """Raise InputError unless a folder can be written in, or be made."""
     there = nearest_existing(folder)
     if not there.is_dir():
-        raise InputError(option, path, f'in a folder; {there} is a file', 'choose another place')
+        raise InputError(option, path, f'in a folder; {there} is not a folder', 'choose another place')
     if not os.access(there, os.W_OK | os.X_OK):
         raise InputError(option, path, 'in a writable folder', 'choose another place')
 
