@@ -21,7 +21,7 @@ import numpy as np
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.identification.identify import identify
 from stickslip_sim.identification.measured_friction import known_friction, slip_share, usual_cycles
-from stickslip_sim.identification.results import fitted_channels
+from stickslip_sim.identification.report import fitted_channels
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.characteristics import plot_known_friction
 from stickslip_sim.plots.identified_motion import plot_fit, plot_residuals

@@ -108,6 +108,6 @@ def blank_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
                 path.write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
 
     for module, names in {'compare.pictures': ('motion', 'characteristics', 'side_by_side'),
-                          'identification.results': ('fit', 'residuals', 'known_friction', 'correlations')}.items():
+                          'identification.report': ('fit', 'residuals', 'known_friction', 'correlations')}.items():
         for name in names:
             monkeypatch.setattr(f'stickslip_sim.{module}.plot_{name}', blank)

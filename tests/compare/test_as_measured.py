@@ -14,7 +14,7 @@ from stickslip_sim.compare.fresh import simulate_densely
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.types import EventKind
 from stickslip_sim.identification.identify import identify
-from stickslip_sim.identification.results import write_results
+from stickslip_sim.identification.report import write_results
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.characteristics import Characteristics, plot_characteristics
 from stickslip_sim.recording import read_run, write_measured

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
+from stickslip_sim.identification.certainty import misfits_of
 from stickslip_sim.identification.free_parameters import free_parameters
 from stickslip_sim.identification.identified import AT_BOUND, NOT_IDENTIFIABLE, VOID, Identification
 from stickslip_sim.identification.identified_scene import interval_words
 from stickslip_sim.identification.readings import readings_of
 from stickslip_sim.identification.report import result_lines
-from stickslip_sim.identification.residual_tests import misfits_of
 from stickslip_sim.scene import changed
 from tests.support.measured_runs import (
     COMPLIANT,

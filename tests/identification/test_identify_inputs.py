@@ -8,13 +8,26 @@ import numpy as np
 import pytest
 
 import stickslip_sim as stickslip
+from stickslip_sim import Simulator
 from stickslip_sim.core.errors import InputError
-from stickslip_sim.identification.identified import NOT_IDENTIFIABLE, VOID
+from stickslip_sim.core.types import Instant
+from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE, VOID
 from stickslip_sim.identification.identified_scene import IDENTIFIED_SCENE
-from stickslip_sim.identification.results import write_results
+from stickslip_sim.identification.report import write_results
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import changed
-from tests.support.measured_runs import MOTOR, OF_FRICTION, OFF, RIGID, as_run, between, check, estimate_of, few_starts
+from tests.support.measured_runs import (
+    MOTOR,
+    OF_FRICTION,
+    OFF,
+    RIGID,
+    as_run,
+    between,
+    check,
+    estimate_of,
+    few_starts,
+    truth,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -35,12 +48,12 @@ def test_a_motor_force_drives_an_axis_without_a_spring(tmp_path: Path) -> None:
     (position,) = found.channels
     assert np.std(position.measured - position.fitted) > 20.0 * position.resolution
     assert np.std(position.residuals) == pytest.approx(position.resolution, rel=0.3)
-    assert len(found.notes) == 1
+    assert len(found.notes) == 2   # a motion of one frequency does not show well how late the force acts
     for name, right in (('axis.mass', 95.0), ('friction.kinetic.coefficients[0]', 0.2),
                         ('friction.kinetic.end_slope', 2.0)):
         estimate = estimate_of(found, name)
         low, high = estimate.best_interval
-        assert high - low < 0.01 * right
+        assert high - low < 0.03 * right
         assert low - 0.5 * (high - low) < right < high + 0.5 * (high - low), estimate
     assert found.runs < 2000
 
@@ -65,8 +78,8 @@ def test_noise_of_a_motor_force_decides_when_a_slider_breaks_away(seed: int, tmp
     assert found.fits, found.misfits
     for name, right in (('friction.static.initial', 0.2), ('friction.kinetic.coefficients[0]', 0.1)):
         low, high = estimate_of(found, name).best_interval
-        assert low < right < high
-        assert high - low < 0.02 * right
+        assert low - 0.2 * (high - low) < right < high + 0.2 * (high - low)
+        assert high - low < 0.03 * right
 
 
 @few_starts()
@@ -169,7 +182,7 @@ def test_static_friction_without_a_break_away_is_not_identifiable(tmp_path: Path
         'axis.mass': between(50.0, 200.0), 'friction.static.initial': between(0.05, 0.9)})
     static = estimate_of(found, 'friction.static.initial')
     assert static.kind == NOT_IDENTIFIABLE
-    assert static.value == static.start
+    assert static.value == pytest.approx(static.start, rel=1e-4)
     assert static.interval == (0.05, 0.9)
     assert static.profile is not None
     assert static.profile[0] <= 0.2 < static.profile[1]   # with more it would rest where it turned
@@ -189,6 +202,79 @@ def test_a_drive_that_was_measured_by_its_encoder(tmp_path: Path) -> None:
     check(found, RIGID, 0.005)
     assert found.notes == ('the drive moves as it was measured',)
     assert found.runs < 10_000
+
+
+# An axis under a controller: its force is held from reading to reading, and what makes it break away is an integral.
+
+LOOP = changed(MOTOR, {
+    'axis.mass': 60.0, 'axis.normal_force': 500.0, 'friction.static.initial': 0.08, 'force.course': 'constant',
+    'friction.kinetic.law': 'stribeck', 'friction.kinetic.velocities': None, 'friction.kinetic.coefficients': None,
+    'friction.kinetic.end_slope': None, 'friction.kinetic.initial': 0.065, 'friction.kinetic.limit': 0.045,
+    'friction.kinetic.stribeck_velocity': 0.01, 'friction.kinetic.viscous': 0.15})
+
+
+def positioned_by_a_controller(folder: Path, late: float) -> MeasuredRun:
+    """Return 3 s of moves there and back, by an encoder of 0.3 µm; its force is held for 1 ms, and acts `late` (s).
+
+    What is read of the force counts in steps of 0.8 N.
+    """
+    simulator = Simulator(LOOP.axis, LOOP.initial, LOOP.drive, LOOP.force)
+    times, goals = 1e-3 * np.arange(3001, dtype=np.float64), (0.0, 0.01, -0.004, 0.006)
+    share = np.clip((times % 0.7 - 0.2) / 0.4, 0.0, 1.0)
+    begins, ends = (np.array(goals)[np.minimum((times / 0.7).astype(int) + k, 3)] for k in (0, 1))
+    wanted = begins + (ends - begins) * share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    speeds, positions, forces = np.gradient(wanted, 1e-3), np.zeros(len(times)), np.zeros(len(times))
+    total = speed = 0.0
+    for k, time in enumerate(times.tolist()):
+        if k:
+            simulator.advance(Instant(*divmod(times[k - 1].item() + late, 1.0)))
+            simulator.command_force(forces[k - 1].item())
+        simulator.advance(Instant(*divmod(time, 1.0)))
+        positions[k] = 3e-7 * round(simulator.sample().position / 3e-7)
+        error = float(wanted[k] - positions[k])
+        speed += 0.5 * (float(positions[k] - positions[max(k - 1, 0)]) / 1e-3 - speed)
+        total += 8e5 * error * 1e-3
+        forces[k] = 1.6e5 * error + total + 4.5e3 * (float(speeds[k]) - speed)
+    return as_run(folder, times, {'position': positions, 'drive_force': 0.8 * np.round(forces / 0.8)})
+
+
+@pytest.mark.parametrize('late', [0.0, 3.8e-4])
+def test_an_axis_under_a_controller(late: float, tmp_path: Path) -> None:
+    start = changed(LOOP, {'axis.mass': 75.0, 'friction.static.initial': 0.1, 'friction.kinetic.initial': 0.08,
+                           'friction.kinetic.limit': 0.035, 'friction.kinetic.viscous': 0.2})
+    free = 'axis.mass', *(f'friction.{name}' for name in ('static.initial', 'kinetic.initial', 'kinetic.limit',
+                                                          'kinetic.stribeck_velocity', 'kinetic.viscous'))
+    found = stickslip.identify(positioned_by_a_controller(tmp_path / 'run', late), start, {
+        name: between(0.5 * truth(start, name), 2.0 * truth(start, name)) for name in free})
+    assert found.fits, found.misfits
+    assert found.values['sensor.external_force.delay'] == pytest.approx(late + 5e-4, abs=1.5e-4)
+    for name in free:
+        estimate = estimate_of(found, name)
+        low, high = estimate.best_interval
+        assert estimate.kind == FOUND, name
+        assert low - 0.3 * (high - low) < truth(LOOP, name) < high + 0.3 * (high - low), estimate
+        assert high - low < 0.2 * truth(LOOP, name), estimate
+
+
+PUSHES = (0.0, 0.2, 0.6, 0.61, 1.0, 1.2, 1.7, 1.71)   # s
+ONE_WAY = changed(MOTOR, {'friction.static.initial': 0.3, 'force.course': 'table', 'force.times': PUSHES,
+                          'force.forces': (0.0, 0.0, 45.0, 0.0, 0.0, 5.0, 60.0, 5.0)})
+
+
+@few_starts()
+def test_an_offset_of_the_force_and_friction_one_way_are_not_told_apart_by_a_guess(tmp_path: Path) -> None:
+    """Only static friction of the scene, which is not that of the axis and is not sought, would tell them apart."""
+    samples = stickslip.simulate(ONE_WAY, 2.2, 1e-3).samples
+    noise = np.random.default_rng(0).normal(0.0, 0.3, len(samples['time']))
+    run = as_run(tmp_path / 'run', samples['time'], {
+        'position': np.round(samples['position'], 6), 'drive_force': samples['external_force'] + 4.0 + noise})
+    start = changed(ONE_WAY, {'friction.static.initial': 0.36, 'friction.kinetic.coefficients': (0.25,),
+                              'force.course': 'constant', 'force.times': None, 'force.forces': None})
+    found = stickslip.identify(run, start, {
+        'friction.kinetic.coefficients[0]': between(0.05, 0.5), 'sensor.external_force.offset': between(-30.0, 30.0)})
+    assert {one.kind for one in found.estimates[:2]} == {NOT_IDENTIFIABLE}
+    (together,) = found.combinations
+    assert set(together.names) >= {'friction.kinetic.coefficients[0]', 'sensor.external_force.offset'}
 
 
 # Inputs that were measured stand in the scene that was found, so that it runs as the axis did.

@@ -16,7 +16,7 @@ from stickslip_sim import Sample, Simulator, load_scene
 from stickslip_sim.axis import Friction
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.types import EventKind, Mode
-from stickslip_sim.identification.axis_model import with_table
+from stickslip_sim.identification.axis_model import put_in_order, with_table
 from stickslip_sim.identification.certainty import certainty_of, combinations_of
 from stickslip_sim.identification.direct import with_delay
 from stickslip_sim.identification.force_noise import NoiseFilter, filters_of, with_quiet_rests
@@ -30,6 +30,7 @@ from stickslip_sim.identification.readings import (
     SensorReadings,
     instants_of,
     profile_through,
+    quantum_of,
     readings_of,
     travelled,
     velocity_within,
@@ -266,6 +267,27 @@ def test_a_step_of_the_force_stays_one() -> None:
     assert np.abs(found - force).max() < 5.0 * NOISE
 
 
+# The step in which a sensor counts.
+
+
+@pytest.mark.parametrize(('counts', 'step'), [
+    ((1, 2), 1.0), ((2, 3), 1.0), ((3, 5), 1.0), ((6, 10, 15), 1.0), ((4, 6), 2.0), ((2, 4, 6), 2.0)])
+def test_a_sensor_counts_in_the_greatest_step_of_which_its_changes_are_whole_numbers(counts: tuple[int, ...],
+                                                                                     step: float) -> None:
+    random = np.random.default_rng(0)
+    readings = np.cumsum(random.choice(counts, 400) * random.choice([-1, 1], 400))
+    for quantum in (1e-6, 0.02, 1.0 / 3.0):
+        assert quantum_of(readings * quantum) == pytest.approx(step * quantum, rel=1e-9)
+        rounded = np.round(1000.0 * readings / 3.0) * quantum   # as a file has it: to thousandths of a step
+        assert quantum_of(rounded) == pytest.approx(step * 1000.0 / 3.0 * quantum, rel=1e-3)
+
+
+@pytest.mark.parametrize('number', [20, 50, 1000])
+def test_noise_counts_in_no_step(number: int) -> None:
+    random = np.random.default_rng(number)
+    assert not any(quantum_of(random.normal(size=number)) for _ in range(100))
+
+
 # What a measured force and the motion that it makes tell by themselves: how late the force was read.
 
 MICROMETRE = 1e-6
@@ -318,6 +340,16 @@ def by_table(friction: Friction) -> Friction:
     """Return friction whose kinetic tables do not know which law they stand for."""
     kinetic = replace(friction.kinetic, law=None, error=0.0, tolerance=0.0)
     return replace(friction, kinetic=kinetic, backward=friction.backward and by_table(friction.backward))
+
+
+def test_static_friction_of_either_way_is_not_below_kinetic_friction() -> None:
+    """By rounding, as of the exponential of a logarithm, it was on the way back: no start, and a traceback."""
+    values = dict(scene(**{'friction.static.backward.initial': 0.1, 'friction.kinetic.backward.initial': 0.1}).values)
+    values['friction.kinetic.backward.initial'] = 0.1 + 1e-15
+    put_in_order(values)
+    assert values['friction.static.backward.initial'] == 0.1 + 1e-15
+    assert values[STATIC] == 0.15
+    scene_from_values(values)
 
 
 @pytest.mark.parametrize('accelerates', [False, True])

@@ -37,9 +37,9 @@ from stickslip_sim.identification.measured_friction import (
     static_of,
     usual_cycles,
 )
-from stickslip_sim.identification.report import IDENTIFIED_VALUES
-from stickslip_sim.identification.results import (
+from stickslip_sim.identification.report import (
     IDENTIFIED_PAGE,
+    IDENTIFIED_VALUES,
     POSTERIOR,
     fitted_channels,
     write_results,

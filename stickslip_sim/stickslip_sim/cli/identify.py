@@ -45,8 +45,7 @@ def identify(runs: tuple[str, ...], scene: str, free: str, out: str, laws: bool,
     from ..core.errors import VerdictError
     from ..identification.identify import identify as find
     from ..identification.many_fits import WorkFolder, facts_of
-    from ..identification.report import result_lines
-    from ..identification.results import IDENTIFIED_PAGE, write_results
+    from ..identification.report import IDENTIFIED_PAGE, result_lines, write_results
     from ..scene.load import read_text
 
     start = changes.load(scene)

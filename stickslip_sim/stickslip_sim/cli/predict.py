@@ -24,8 +24,8 @@ def predict(scene: str, runs: tuple[str, ...], out: str | None, changes: SceneCh
     report.json in its folder.
     """
     from ..identification.prediction import known_sensors, predicted
-    from ..identification.prediction_report import prediction_parts, write_predictions
     from ..identification.readings import check_distinct
+    from ..identification.report import prediction_parts, write_predictions
     from ..runs.report import named_apart
     from ..scene.load import named
 

@@ -98,16 +98,25 @@ def _breakpoints(shape: Shape, share: float) -> Breakpoints:
 
 
 def put_in_order(values: dict[str, object]) -> None:
-    """Raise static friction to kinetic friction at rest, and its limit to its start, where values have it lower."""
-    kinetic = values.get(_LAW + 'initial')
-    if kinetic is None:
-        coefficients = values[_LAW + 'coefficients']
-        assert isinstance(coefficients, tuple)
-        kinetic = coefficients[0]
-    initial = max(float(str(values['friction.static.initial'])), float(str(kinetic)))
-    values['friction.static.initial'] = initial
-    if 'friction.static.limit' in values:
-        values['friction.static.limit'] = max(float(str(values['friction.static.limit'])), initial)
+    """Raise static friction to kinetic friction at rest, and its limit to its start, where values have it lower.
+
+    That of the way back, too, where it is another.
+    """
+    for name_of in (forward_name, backward_name):
+        if name_of is backward_name and all(forward_name(name) == name for name in values):
+            return
+        kinetic = values.get(name_of(_LAW + 'initial'), values.get(_LAW + 'initial'))
+        if kinetic is None:
+            name = _LAW + 'coefficients'
+            coefficients = values.get(name_of(name), values.get(name))
+            assert isinstance(coefficients, tuple)
+            kinetic = coefficients[0]
+        least = float(str(kinetic))
+        for name in (name for name in ('friction.static.initial', 'friction.static.limit') if name in values):
+            value = float(str(values.get(name_of(name), values[name])))
+            least = max(value, least)
+            if least > value:
+                values[name_of(name)] = least
 
 
 OUTPUT_PLACES = {name: Sample._fields.index(name) for name in OUTPUTS}

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
 from ..core.input_profile import InputProfile
+from ..scene.build import Dynamics
 from .axis_model import AxisModel
 from .free_parameters import FreeParameter, Region, values_at
 from .least_squares import minimise
@@ -69,11 +70,15 @@ def static_residuals(model: AxisModel, measured: Sequence[MeasuredBreakAway], va
     dynamics = model.dynamics(values)
     if dynamics is None:
         return np.full(len(measured), np.nan)
+    right, apart = np.array([one.coefficient for one in measured]), static_apart(dynamics, measured)
+    return np.asarray(apart / (_SHARE * np.maximum(np.abs(right), _SHARE * (right - apart))))
+
+
+def static_apart(dynamics: Dynamics, measured: Sequence[MeasuredBreakAway]) -> Numbers:
+    """Return by how much measured coefficients (n,) are larger than those of the law."""
     friction = dynamics.axis.friction
     sides = {True: friction.static, False: (friction.backward or friction).static}
-    fitted = np.array([sides[one.forwards].coefficient(one.rest) for one in measured])
-    right = np.array([one.coefficient for one in measured])
-    return np.asarray((right - fitted) / (_SHARE * np.maximum(np.abs(right), _SHARE * fitted)))
+    return np.array([one.coefficient - sides[one.forwards].coefficient(one.rest) for one in measured])
 
 
 _CURVED = 720.0**0.5   # of the second derivative of a parabola through n readings: σ times that over n^2.5 periods²
@@ -81,10 +86,12 @@ _FEWEST, _MOST = 5, 0.01   # readings in a parabola, and as a share of the run
 _STILL = 0.03         # of the highest speed: slower is no sure slip
 _WELL = 0.1           # of a range: a standard deviation, beyond which a parameter is not taken
 _TAME = 3.0           # of the residual of a break-away: beyond, its size counts, for not each is one
-_DELAY = 'sensor.external_force.delay'
+FORCE_DELAY = 'sensor.external_force.delay'
 _LONGEST, _FINE = 10, 8   # periods, and steps in each
+_SHOWN = 3         # periods: so far from the best a delay must be worse for sure, of a motion that shows it
 _SURE = 25.0       # of a logarithm of the likelihood, twice
 _ENOUGH = 50          # readings
+_SPEEDS = np.linspace(0.0, 1.0, 9)**2   # quantiles, between which friction is a line: most of them slow
 
 
 class SlidingMotion(NamedTuple):
@@ -109,8 +116,8 @@ class SlidingMotion(NamedTuple):
 
 def force_noise_of(measurement: SensorReadings) -> float:
     """Return the standard deviation of the noise in the measured force on the slider, N."""
-    if measurement.force_readings is None:
-        return 0.0
+    if measurement.force_noise is not None or measurement.force_readings is None:
+        return measurement.force_noise or 0.0
     values = measurement.force_readings.values
     return noise_of(values, quantum_of(values))
 
@@ -141,31 +148,37 @@ def sliding_motion(measurement: SensorReadings, mass: float) -> SlidingMotion | 
 
 def with_delay(parameters: tuple[FreeParameter, ...], measurement: SensorReadings, mass: float
                ) -> tuple[tuple[FreeParameter, ...], SensorReadings]:
-    """Return the parameters with the delay of the measured force among them, and a note, where there is one for sure.
+    """Return the parameters with the delay of the measured force among them, and a note, unless there is none for sure.
 
     A force that a controller holds up to its next reading acts half a period later than the line through the readings;
-    a drive has delays of its own.  The delay is right that leaves least of F = m ẍ + d ẋ + R sign ẋ + a constant, all
-    four fitted.  A motion of one frequency shows none.
+    a drive has delays of its own.  The delay is right that leaves least of F = m ẍ + R(|ẋ|) sign ẋ + a constant, all
+    fitted, whatever the law of friction.  A motion of one frequency shows none.
     """
     motion = sliding_motion(measurement, mass)
-    if motion is None or any(one.name == _DELAY for one in parameters):
+    if motion is None or any(one.name == FORCE_DELAY for one in parameters):
         return parameters, measurement
     delays = measurement.period * np.linspace(-_LONGEST, _LONGEST, 2 * _LONGEST * _FINE + 1)
     left = np.array([_left(motion, float(delay)) for delay in delays])
-    best = int(left.argmin())
+    best, none, held = int(left.argmin()), _left(motion, 0.0), _left(motion, 0.5 * measurement.period)
     count = len(motion.rows) / motion.length
-    if not 0 < best < len(delays) - 1 or count * (_left(motion, 0.0) / left[best] - 1.0) < _SURE:
+    if not _SHOWN * _FINE <= best < len(delays) - _SHOWN * _FINE:
+        return parameters, measurement
+    is_shown, is_late, is_line = (count * (other / least - 1.0) >= _SURE for other, least in (
+        (min(left[best - _SHOWN * _FINE], left[best + _SHOWN * _FINE]), left[best]), (none, left[best]), (held, none)))
+    if not is_late and (is_line or not is_shown):
         return parameters, measurement
     delay, most = float(delays[best]), float(delays[-1])
-    note = f'the measured force acts {1e3 * delay:.2g} ms after its readings: {_DELAY} is free, too'
-    return ((*parameters, FreeParameter(_DELAY, 's', delay, -most, most)),
+    note = f'the measured force acts {1e3 * delay:.2g} ms after its readings: {FORCE_DELAY} is free, too'
+    return ((*parameters, FreeParameter(FORCE_DELAY, 's', delay, -most, most)),
             replace(measurement, notes=(*measurement.notes, note)))
 
 
 def _left(motion: SlidingMotion, delay: float) -> float:
-    """Return the sum of squares that is left of the force."""
-    speed, force = motion.velocity, motion.force_after(delay)
-    terms = np.stack([motion.acceleration, speed, np.sign(speed), np.ones(len(speed))], axis=1)
+    """Return the sum of squares that is left of the force; friction is a line through some speeds."""
+    speed, force = np.abs(motion.velocity), motion.force_after(delay)
+    knots = np.unique(np.quantile(speed, _SPEEDS))
+    friction = [np.sign(motion.velocity) * np.interp(speed, knots, one) for one in np.eye(len(knots))]
+    terms = np.stack([motion.acceleration, np.ones(len(speed)), *friction], axis=1)
     found, *_ = np.linalg.lstsq(terms, force, rcond=None)
     left = force - terms @ found
     return float(left @ left)

@@ -15,9 +15,10 @@ Friction, which lets the velocity forget the noise within m/d, is left out: with
 encoder say as much as each other it does nothing.  A stop makes the slider forget it at once, which the filter does not
 know: the few samples in which it learns that count nothing.
 
-Noise decides, too, when a slider breaks away: later by δ it has the velocity (F_s − F_k) δ/m less from then on, many
-times the noise of a sample.  That is one error of the force for each break-away: motions with other errors show what
-each does to the residuals, and with the covariance 1 + Σ p(z) Δ(z) Δ(z)ᵀ of these they are made white.
+Noise, and how a controller holds its force from reading to reading, decide when a slider breaks away: later by δ it
+has the velocity (F_s − F_k) δ/m less from then on, many times the noise of a sample.  So each motion is simulated from
+its own break-away on, at the time that the readings of its position say, and what another time does to the residuals
+is taken out of them.  Static friction is the force that it took.
 
 Source: A. C. Harvey, Forecasting, Structural Time Series Models and the Kalman Filter (1989), 2.3 and 4.3.
 """
@@ -33,38 +34,56 @@ from numpy.typing import NDArray
 
 from ..axis import Friction
 from ..core.arrays import Numbers
-from .motions import MeasuredMotion
-from .readings import LINE, Channel, InputReadings, SensorReadings, noise_of, own_noise_of, quantum_of
+from .motions import MeasuredMotion, StillRest, still_rests
+from .readings import (
+    LINE,
+    SMALLEST,
+    Channel,
+    InputReadings,
+    SensorReadings,
+    noise_of,
+    noise_of_thirds,
+    own_noise_of,
+    quantum_of,
+    weights_of,
+)
 
 _NOTICEABLE = 0.1   # of the noise of a sensor: less by the noise of the force over the whole run is left out
 _GAP = 1.5          # periods: after longer ones the filter starts anew
 _BEFORE = 5         # samples before a stop, which in the simulation may come a little earlier
 _LEFT = 0.01        # of a step that the filter has not learnt yet
+_LEAST = 1e-9       # of the noise of a sensor: less of the force is none
 
 
 class BreakAwayNoise(NamedTuple):
-    """What the error of the force at a break-away does from the row `begin` on: residuals in `ways` (n, r), too large.
+    """What is unknown of a break-away, and does to residuals from the row `begin` on: unit vectors `ways` (n, r).
 
-    They are left with the `shares` (r,) of what they are.
+    They are left with the `shares` (r,) of what they are: 0 in weighted residuals, more in those that are white.
     """
 
     begin: int
     ways: Numbers
     shares: Numbers
 
+    def taken_from(self, residuals: Numbers) -> None:
+        """Take it out of residuals (n,)."""
+        part = residuals[self.begin:self.begin + len(self.ways)]
+        part -= self.ways @ ((1.0 - self.shares) * (self.ways.T @ part))
+
 
 class NoiseFilter(NamedTuple):
     """(1 − z⁻¹)ⁿ over 1 + a₁ z⁻¹ + …; what comes out has a standard `deviation`, in the unit of the channel.
 
-    It starts anew at the rows `begins`, after gaps.  `counts` (n,) is 0 where the slider has just come to a stop, and
-    from a gap, over which nobody knows the force, or a start in motion, to the next stop; else 1.  `roots` (n,) are
-    those of the weights of the readings.
+    It starts anew at the rows `begins`, after gaps and before break-aways; at those `known` the simulation is right.
+    `counts` (n,) is 0 where the slider rests or has just come to a stop, and from a gap, over which nobody knows the
+    force, or a start in motion, to the next stop; else 1.  `roots` (n,) are those of the weights of the readings.
     """
 
     order: int
     denominator: tuple[float, ...]
     deviation: float
     begins: tuple[int, ...]
+    known: frozenset[int]
     counts: Numbers
     roots: Numbers
     break_aways: tuple[BreakAwayNoise, ...] = ()
@@ -77,13 +96,13 @@ class NoiseFilter(NamedTuple):
         found = np.empty(len(residuals))
         for first, last in zip(self.begins, (*self.begins[1:], len(residuals)), strict=True):
             part = residuals[first:last]
-            before = 0.0 if first == 0 else part[0]   # at the start of the run the simulation is right; else unknown
+            before = 0.0 if first in self.known else part[0]
             state = lfiltic(numerator, self.denominator, np.zeros(self.order), np.full(self.order, before))
             found[first:last], _ = lfilter(numerator, self.denominator, part, zi=state)
         found *= self.counts
         for one in self.break_aways:
-            part = found[one.begin:one.begin + len(one.ways)]
-            part -= one.ways @ ((1.0 - one.shares) * (one.ways.T @ part))
+            if one.shares.any():
+                one.taken_from(found)
         return found
 
     def of_break_aways(self, changes: Sequence[Numbers], edges: NDArray[np.intp], scales: Numbers) -> 'NoiseFilter':
@@ -101,44 +120,65 @@ class NoiseFilter(NamedTuple):
                 found.append(BreakAwayNoise(int(begin), ways[:, large], (1.0 + sizes[large]**2)**-0.5))
         return self._replace(break_aways=tuple(found))
 
+    def from_row(self, rows: slice) -> 'NoiseFilter':
+        """Return the filter of some rows, at the first of which the simulation is right; without its break-aways."""
+        begins = (0, *(row - rows.start for row in self.begins if rows.start < row < rows.stop))
+        return self._replace(begins=begins, known=frozenset({0}), counts=self.counts[rows], roots=self.roots[rows],
+                             break_aways=())
+
     def weighted(self, residuals: Numbers) -> Numbers:
-        """Return `white` residuals (n,) times the roots of their weights."""
-        return np.asarray(self.roots * self.white(residuals))
+        """Return `white` residuals (n,) times the roots of their weights, without what break-aways leave unknown."""
+        found = np.asarray(self.roots * self.white(residuals))
+        for one in self.break_aways:
+            if not one.shares.any():
+                one.taken_from(found)
+        return found
+
+
+def unknown(begin: int, way: Numbers) -> BreakAwayNoise:
+    """Return what is unknown of a break-away of which nothing is left: a vector (n,) of any length."""
+    return BreakAwayNoise(begin, way[:, None] / max(float(np.linalg.norm(way)), 1e-300), np.zeros(1))
 
 
 def filters_of(measurement: SensorReadings, force_noise: float, mass: float, stops: Numbers,
-               moves: bool = False) -> tuple[NoiseFilter | None, ...]:
+               moves: bool = False, parts: Sequence[slice] = ()) -> tuple[NoiseFilter | None, ...]:
     """Return a filter for each channel, None where noise of the force (N, a standard deviation) does not show.
 
     The slider comes to rest, or turns, at the times `stops` (s); at the start it `moves`, nobody knows how, or rests.
+    Only `parts` of the run count, if there are any, each of which begins with a rest, or with the run.
     """
     step = force_noise / mass * measurement.period        # m/s, what one reading of the force is off by
     gaps = np.flatnonzero(np.diff(measurement.times) > _GAP * measurement.period) + 1
-    begins = (0, *(int(row) for row in gaps))
+    unknown = [*([0] if moves else []), *gaps.tolist()]
     rows = np.searchsorted(measurement.times, stops)
-    return tuple(_filter(channel, step, measurement.period, begins, rows, moves)
+    return tuple(_filter(channel, step, measurement.period, unknown, rows, parts)
                  for channel in measurement.channels)
 
 
-def _filter(channel: Channel, step: float, period: float, begins: tuple[int, ...], stops: NDArray[np.intp],
-            moves: bool) -> NoiseFilter | None:
+def _filter(channel: Channel, step: float, period: float, unknown: Sequence[int], stops: NDArray[np.intp],
+            parts: Sequence[slice]) -> NoiseFilter | None:
     orders = {'velocity': 1, 'position': 2}
-    order = orders.get(channel.name, 0)
-    count = float(len(channel.values))
+    order, count = orders.get(channel.name, 0), len(channel.values)
     grown = step * count**0.5 * (period * count if order == 2 else 1.0)
-    if order == 0 or grown <= _NOTICEABLE * channel.resolution:
+    if order == 0 or (grown <= _NOTICEABLE * channel.resolution and not parts):
         return None
     own = own_noise_of(channel.values, channel.quantum) if channel.quantum > 0.0 else channel.resolution
-    ratio = step * (period if order == 2 else 1.0) / own
+    ratio = max(step * (period if order == 2 else 1.0) / own, _LEAST)
     denominator, more = _of_velocity(ratio) if order == 1 else _of_position(ratio)
     learns = math.ceil(order * math.log(_LEFT) / math.log(max(abs(denominator[-1]), _LEFT)))
-    counts = np.ones(len(channel.values))
-    for row in stops:
-        counts[max(row - _BEFORE, 0):row + learns] = 0.0
-    for row in begins if moves else begins[1:]:
-        later = stops[stops >= row]
-        counts[row:int(later[0]) if len(later) else len(counts)] = 0.0
-    return NoiseFilter(order, denominator, more * own, begins, counts, np.sqrt(channel.weights))
+    counts = np.zeros(count)
+    whole = [slice(0, count)]
+    for part in parts or whole:
+        counts[part] = 1.0
+        inside = stops[(stops > part.start) & (stops < part.stop + _BEFORE)]
+        for row in inside:
+            counts[max(row - _BEFORE, part.start):min(row + learns, part.stop)] = 0.0
+        for row in (row for row in unknown if part.start <= row < part.stop):
+            later = inside[inside >= row]
+            counts[row:int(later[0]) if len(later) else part.stop] = 0.0
+    known = frozenset(part.start for part in parts or whole)
+    return NoiseFilter(order, denominator, more * own, tuple(sorted({0, *unknown, *known})), known, counts,
+                       np.sqrt(channel.weights))
 
 
 def _of_velocity(ratio: float) -> tuple[tuple[float, ...], float]:
@@ -187,40 +227,53 @@ def with_static_times(friction: Friction, factor: float) -> Friction:
 
 _LENGTHS = 5, 9, 17, 33, 65   # readings in a parabola: the longest one that follows the force is taken
 _CHANCE = 4.0   # standard deviations of a mean square: residuals of a parabola up to that are noise
+_FEWEST = 100   # readings at rest, of which the noise is taken
 
 
-def with_quiet_rests(measurement: SensorReadings, motions: Sequence[MeasuredMotion]) -> SensorReadings:
+def with_quiet_rests(measurement: SensorReadings, motions: Sequence[MeasuredMotion], yields: bool = False
+                     ) -> SensorReadings:
     """Return the measurement with its force smoothed while the slider rests; `force_readings` stay as they are.
 
-    Each rest is taken to last until the slider has gone a tenth of its next motion: smoothing does no harm there, and
-    the `begin` of a motion may come before the break-away.
+    The noise is that at rest, if there is enough of it: what a controller makes of the steps of its encoder drives the
+    slider, and is no noise.  A contact that `yields` moves at rest, too.
     """
     readings = measurement.force_readings
     if readings is None or not motions:
         return measurement
-    times = measurement.times
-    ends = [times[0], *(motion.end for motion in motions)]
-    begins = [*(motion.passed[0] for motion in motions), times[-1]]
-    at_rest = np.any([(times >= end) & (times <= begin) for end, begin in zip(ends, begins, strict=True)], axis=0)
-    smooth, deviations = _smoothed(readings.values)
-    values = np.where(at_rest, smooth, readings.values)
-    return replace(measurement, force=InputReadings(times, values, LINE).profile(), force_deviations=deviations)
+    times, values, quantum = measurement.times, readings.values.copy(), quantum_of(readings.values)
+    found: Sequence[StillRest | None] = [None] * len(motions) if yields else still_rests(measurement, motions)[0]
+    since = np.searchsorted(times, [times[0], *(motion.end for motion in motions)]).tolist()
+    begins = np.searchsorted(times, [motion.passed[0] if yields else motion.begin for motion in motions]).tolist()
+    until = [begin if rest is None else rest.last + 1 for begin, rest in zip(begins, found, strict=True)]
+    rests = [slice(*ends) for ends in zip(since, (*until, len(times)), strict=True)]
+    thirds = [np.diff(values[rest], 3) for rest in rests]
+    noise, weights = noise_of(values, quantum), weights_of(values, quantum)
+    if sum(map(len, thirds)) >= _FEWEST:
+        noise = min(max(noise_of_thirds(np.concatenate(thirds), quantum), SMALLEST * float(np.ptp(values))), noise)
+    deviations = np.full(len(times), noise)
+    for rest in rests:
+        values[rest], deviations[rest] = _smoothed(values[rest], noise, weights[rest])
+    return replace(measurement, force=InputReadings(times, values, LINE).profile(), force_noise=noise,
+                   force_deviations=deviations)
 
 
-def _smoothed(values: Numbers) -> tuple[Numbers, Numbers]:
+def _smoothed(values: Numbers, noise: float, weights: Numbers) -> tuple[Numbers, Numbers]:
     """Return readings (n,) smoothed by parabolas, each as long as it follows them, so that a step stays a step.
 
-    The second are the standard deviations (n,) that the noise has left.
+    The second are the standard deviations (n,) that the noise has left, more of it at both ends; readings of one count
+    say no more than one.
     """
     from scipy.ndimage import uniform_filter1d  # both take a while, and only a measured force needs them
     from scipy.signal import savgol_filter
 
-    variance, found = noise_of(values, quantum_of(values))**2, values
-    left_of_noise = np.ones(len(values))
-    for length in (length for length in _LENGTHS if length < len(values)):
-        smooth = savgol_filter(values, length, 2)
+    found, left_of_noise = values, np.ones(len(values))
+    for length in (length for length in _LENGTHS if length <= len(values)):
+        smooth, half = savgol_filter(values, length, 2), length // 2
         left = uniform_filter1d((values - smooth)**2, length)
-        follows = left <= (1.0 + _CHANCE * (2.0 / length)**0.5) * variance
+        follows = left <= (1.0 + _CHANCE * (2.0 / length)**0.5) * noise**2
         found = np.where(follows, smooth, found)
-        left_of_noise[follows] = 0.75 * (3.0 * length**2 - 7.0) / (length * (length**2 - 4.0))
-    return np.asarray(found), np.sqrt(variance * left_of_noise)
+        powers = np.vander(np.linspace(-1.0, 1.0, length), 3)
+        shares = np.diag(powers @ np.linalg.inv(powers.T @ powers) @ powers.T)
+        share = np.concatenate([shares[:half], np.full(len(values) - 2 * half, shares[half]), shares[half + 1:]])
+        left_of_noise[follows] = np.minimum(share / uniform_filter1d(weights, length), 1.0)[follows]
+    return np.asarray(found), noise * np.sqrt(left_of_noise)

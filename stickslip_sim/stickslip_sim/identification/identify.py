@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..axis import CompliantContact
 from ..core.arrays import Numbers
 from ..core.errors import InputError
 from ..inputs import SceneOrName, scene_of
@@ -27,7 +28,10 @@ from .certainty import (
     certainty_of,
     changes_by_inputs,
     combinations_of,
+    correlation_length,
     covariance_by_inputs,
+    inflation_of,
+    misfits_of_fit,
     more_by_inputs,
     with_profile_intervals,
 )
@@ -56,7 +60,6 @@ from .motions import MeasuredMotion, motions_of, track_of
 from .other_laws import CRITERION, along_the_run, best_of_slips, criterion_of, with_laws
 from .prediction import check_is_moved, predict
 from .readings import SensorReadings, check_distinct, drives_directly, readings_of, travelled
-from .residual_tests import correlation_length, inflation_of, misfits_of_fit
 from .run_start import from_measured_start
 from .several_runs import RunFit, disagreements, is_own, joint_ends
 from .slip_features import shown_break_away
@@ -88,8 +91,8 @@ def identification_of(problem: FitProblem, scene: Scene, ends: Sequence[Ended], 
     whole = problem.stretches(None if best.of_slips is None else 0)
     fitted = problem.fitted(point, whole)
     assert fitted is not None
-    channels = _channels(problem, fitted, None if best.of_slips is None else problem.fitted(point,
-                                                                                            problem.stretches(None)))
+    alone = problem.stretches(len(problem.motions) + 1)   # from the start of the run on
+    channels = _channels(problem, fitted, problem.fitted(point, alone) if len(whole.parts) > 1 else None)
     information = best.solution.information
     changes = changes_by_inputs(problem, point) if best.of_slips is None else []
     more = more_by_inputs(problem, changes)
@@ -302,8 +305,8 @@ def _problem(run: Run, scene: Scene, parameters: tuple[FreeParameter, ...], reso
     scene, parameters, notes = from_measured_start(scene, parameters, measurement, motions)
     measurement = replace(measurement, notes=(*measurement.notes, *notes))
     if drives_directly(scene):
+        measurement = with_quiet_rests(measurement, motions, isinstance(scene.axis.contact, CompliantContact))
         parameters, measurement = with_delay(parameters, measurement, scene.axis.mass)
-        measurement = with_quiet_rests(measurement, motions)
     return FitProblem(AxisModel(scene, parameters, measurement), parameters, measurement, motions)
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from ..core.arrays import Numbers
 from ..core.input_profile import InputProfile
 from ..figures.slips import stretches_of
-from .readings import SensorReadings, travelled
+from .readings import Channel, SensorReadings, travelled
 
 _NOISE, _OF_DRIVE = 0.01, 0.05   # of the highest speed, and of a low one of the drive: so much noise a slope may have
 _SLOWEST = 0.05          # quantile of the speeds of the drive
@@ -264,3 +264,47 @@ def _gone(begin: float, end: float, track: Track, drive: InputProfile, part: tup
     ends = begin + np.array(part) * (end - begin)
     return (float(abs(np.diff(np.interp(ends, track.times, track.position))[0])),
             float(abs(np.diff(travelled(drive, ends))[0])))
+
+
+# Rests that are still in the readings themselves, from which the slider breaks away.
+
+_STILL, _COUNTS, _SIGMAS = 10, 1.01, 6.0   # readings in a row, within so many counts, or standard deviations
+
+
+class StillRest(NamedTuple):
+    """The rest before a motion: from row `since` on, still from `first` on, and up to the row `last` at a `place`."""
+
+    since: int
+    first: int
+    last: int
+    place: float
+
+
+def still_rests(measurement: SensorReadings, motions: Sequence[MeasuredMotion]
+                ) -> tuple[list[StillRest | None], list[int]]:
+    """Return the rest before each motion, None where its position shows none, and the row where a rest follows it.
+
+    A motion that no rest follows ends with the run.
+    """
+    channel, times = measurement.channel('position'), measurement.times
+    if channel is None or len(times) <= _STILL:
+        return [None] * len(motions), [len(times)] * len(motions)
+    spans = np.ptp(np.lib.stride_tricks.sliding_window_view(channel.values, _STILL), axis=1)
+    still = spans <= max(_COUNTS * channel.quantum, _SIGMAS * channel.resolution)
+    found: list[StillRest | None] = []
+    ends = []
+    for before, motion in zip((None, *motions), motions):
+        since, moved, over = np.searchsorted(times, (0.0 if before is None else before.end, motion.passed[0],
+                                                     motion.passed[-1])).tolist()
+        rests = since + np.flatnonzero(still[since:max(moved - _STILL + 1, since)])
+        after = over + np.flatnonzero(still[over:])
+        found.append(_still_rest(channel, since, int(rests[-1])) if len(rests) else None)
+        ends.append(int(after[0]) if len(after) else len(times))
+    return found, ends
+
+
+def _still_rest(channel: Channel, since: int, first: int) -> StillRest:
+    readings = channel.values[first:first + _STILL]
+    place = float(np.median(readings))
+    there = np.flatnonzero(np.abs(readings - place) <= max(0.5 * channel.quantum, _LOST * channel.resolution))
+    return StillRest(since, first, first + int(there[-1] if len(there) else _STILL - 1), place)

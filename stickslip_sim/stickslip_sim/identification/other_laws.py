@@ -22,14 +22,13 @@ from ..friction.static import StaticLaw, StaticLawKind
 from ..scene import Scene, scene_from_values
 from ..scene.schema import BY_NAME
 from .axis_model import AxisModel
-from .certainty import certainty_of
+from .certainty import certainty_of, inflation_of
 from .curve.law_fit import SMOOTH_FORMS
 from .fit_problem import FitProblem
 from .free_parameters import FreeParameter
 from .identified import Identification, LawFit
 from .least_squares import minimise, robust_cost, slopes_of, square_cost
 from .many_fits import Keeper, KeyedFit, kept_fits
-from .residual_tests import inflation_of
 from .stages import Ended, StageProgress
 
 _Values = dict[str, float]
@@ -332,8 +331,8 @@ def along_the_run(problem: FitProblem, ends: Sequence[Ended]) -> list[Ended]:
     rows = [k for k, channel in enumerate(channels) if channel.name == 'position']
     if not (rows and problem.is_direct and problem.motions and best.is_off):
         return [*ends]
-    k, point, whole = rows[0], best.solution.point, problem.stretches()
-    fitted = problem.fitted(point, whole)
+    k, point, whole = rows[0], best.solution.point, problem.stretches(len(problem.motions) + 1)
+    fitted = problem.fitted(point, problem.stretches())
     assert fitted is not None
     covariance = certainty_of(best.solution.information, inflation_of(problem, fitted), problem.parameters).covariance
     variances, ways = np.linalg.eigh(covariance)

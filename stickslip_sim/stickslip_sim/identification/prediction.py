@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..axis import CompliantContact
 from ..core.arrays import Numbers
 from ..core.errors import InputError, SolverError
 from ..inputs import SceneOrName, scene_of
@@ -127,7 +128,7 @@ def _problem(scene: Scene, run: Run, errors: Mapping[str, float], resolutions: M
     scene, parameters, notes = from_measured_start(scene, parameters, measurement, motions)
     parameters = (*parameters, *_of_force(measurement, errors), *_delays(scene, measurement, errors))
     if drives_directly(scene):
-        measurement = with_quiet_rests(measurement, motions)
+        measurement = with_quiet_rests(measurement, motions, isinstance(scene.axis.contact, CompliantContact))
     return FitProblem(AxisModel(scene, parameters, measurement), parameters, measurement, motions), notes
 
 

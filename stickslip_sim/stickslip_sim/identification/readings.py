@@ -158,29 +158,38 @@ UNITS: Mapping[str, str] = {**OUTPUTS, **INPUTS}
 _MAD = 1.4826          # standard deviation of a normal distribution over its median absolute deviation
 _THIRD = 20.0**0.5     # of a third difference over that of a reading
 _GRID = 0.02           # of a step: so far from a whole number of steps readings may be
-_SMALLEST = 1e-7       # of the range of the readings: no sensor is taken to be better
+_PARTS = 12            # steps, that the least change of the readings may be
+_BY_CHANCE = 1e-4      # of changes that are any: so likely they are whole numbers of a part of the least one
+SMALLEST = 1e-7       # of the range of the readings: no sensor is taken to be better
 SMALLEST_FORCE = 1e-4  # the same of a force: no model of friction follows it more closely
 
 
 def quantum_of(readings: Numbers) -> float:
-    """Return the step in which a sensor counts, in its unit; 0 where it counts in none that shows."""
-    steps = np.unique(np.abs(np.diff(readings)))
-    steps = steps[steps > 1e-12 * max(float(np.ptp(readings)), 1e-300)]
-    if len(steps) < 2:
-        return float(steps[0]) if len(steps) else 0.0
-    quantum = float(steps[0])
-    if steps[-1] / quantum > 1e7:
+    """Return the step in which a sensor counts, in its unit; 0 where it counts in none that shows.
+
+    It is the greatest of which all changes are whole numbers: the least change seen, or a part of that.
+    """
+    changes = np.unique(np.abs(np.diff(readings)))
+    changes = changes[changes > 1e-12 * max(float(np.ptp(readings)), 1e-300)]
+    if len(changes) < 2:
+        return float(changes[0]) if len(changes) else 0.0
+    if changes[-1] / changes[0] > 1e7:
         return 0.0
-    for _ in range(2):   # the least difference of many is rounded; the mean of all is not
-        counts = np.rint(steps / quantum)
-        quantum = float(np.dot(steps, counts)) / float(np.dot(counts, counts))
-    counts = np.rint(steps / quantum)
-    small = counts < 1e3
-    is_even = bool(np.all(np.abs(steps[small] / quantum - counts[small]) < _GRID))
-    return quantum if is_even and int(small.sum()) > 1 else 0.0
+    for parts in range(1, _PARTS + 1):
+        quantum = float(changes[0]) / parts
+        for _ in range(2):   # the least change of many is rounded; the mean of all is not
+            counts = np.rint(changes / quantum)
+            quantum = float(np.dot(changes, counts)) / float(np.dot(counts, counts))
+        counts = np.rint(changes / quantum)
+        small = counts < 1e3
+        others = int(small.sum()) - 1
+        off = float(np.abs(changes[small] / quantum - counts[small]).max(initial=0.0))
+        if others > 0 and off < _GRID and (parts == 1 or parts * (2.0 * off)**others < _BY_CHANCE):
+            return quantum
+    return 0.0
 
 
-def noise_of(readings: Numbers, quantum: float, smallest: float = _SMALLEST) -> float:
+def noise_of(readings: Numbers, quantum: float, smallest: float = SMALLEST) -> float:
     """Return the standard deviation of the noise in readings, that of counting in steps `quantum` included.
 
     It is at least `smallest`, a share of their range.
@@ -190,7 +199,11 @@ def noise_of(readings: Numbers, quantum: float, smallest: float = _SMALLEST) -> 
 
 def own_noise_of(readings: Numbers, quantum: float) -> float:
     """Return the same without a least one for sensors of a wide range."""
-    third = np.diff(readings, 3)
+    return noise_of_thirds(np.diff(readings, 3), quantum)
+
+
+def noise_of_thirds(third: Numbers, quantum: float) -> float:
+    """Return the same of third differences (n,) of readings."""
     spread: float = _MAD * float(np.median(np.abs(third - np.median(third)))) / _THIRD if len(third) else 0.0
     return max(spread, quantum / float(np.sqrt(12.0)))
 
@@ -267,8 +280,8 @@ class SensorReadings:
     """Channels over `times` (n,), s since the start of the simulation, which is `shift` s of the measurement.
 
     `drive` and `force` are the inputs, where they were measured, made of `drive_readings` and `force_readings`;
-    `force_deviations` (n,) are the standard deviations of a force that was smoothed, N; `period` (s) is the median time
-    between samples.
+    `force_noise` is the standard deviation of its readings at rest, N, `force_deviations` (n,) are those of a force
+    that was smoothed; `period` (s) is the median time between samples.
     """
 
     times: Numbers
@@ -280,6 +293,7 @@ class SensorReadings:
     notes: tuple[str, ...]
     drive_readings: InputReadings | None = None
     force_readings: InputReadings | None = None
+    force_noise: float | None = None
     force_deviations: Numbers | None = None
 
     @property

@@ -1,32 +1,54 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""What an identification found, as it is said: lines for the terminal, one HTML page, and values for JSON."""
+"""What an identification found, or a scene predicts, as it is said: lines, one HTML page, values, and a folder."""
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from html import escape
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError
-from ..plots.characteristics import Band, KnownFriction
-from ..report.html import folded, html_of, html_page, html_table
+from ..figures.catalogue import in_words
+from ..plots.characteristics import Band, KnownFriction, plot_known_friction
+from ..plots.identified_motion import (
+    FittedChannel,
+    PredictedChannel,
+    plot_correlations,
+    plot_fit,
+    plot_prediction,
+    plot_residuals,
+)
+from ..report.html import figure, folded, html_of, html_page, html_table, write_page
+from ..report.model import NOTE, OTHER, Part, Picture, Section, Sentence, Table
 from ..report.quantity import quantity
 from ..report.text import text_lines
 from ..report.values import plain, versions
-from .identified import FOUND, LEVEL, VOID, ChannelFit, Estimate, Identification, LawFit, Misfit, StartEnd
-from .identified_scene import OF_SENSORS, interval_words, number_words
-from .prediction_report import CAPTION, prediction_parts, prediction_values
+from ..runs import Run
+from .identified import FOUND, LEVEL, VOID, ChannelFit, Estimate, Identification, LawFit, Misfit, Prediction, StartEnd
+from .identified_scene import (
+    IDENTIFIED_SCENE,
+    OF_SENSORS,
+    identified_text,
+    input_texts,
+    interval_words,
+    number_words,
+    posterior_text,
+)
+from .measured_friction import known_friction, phases, slip_share, usual_cycles
 
 _CAPTIONS = {
     'fit': 'Fitted motion (thin) over the measured one (thick, grey): the whole run, and two cycles of it (shaded).  '
-           'If single slips were fitted, each starts at a measured arrest, marked below, and predicts only that '
-           'slip.  The free run (dashed) is the model on its own from the start.',
+           'Where single slips were fitted, or a force drives the slider by itself, each motion starts at a measured '
+           'arrest, marked below, and predicts only that one.  The free run (dashed) is the model on its own from the '
+           'start.',
     'residuals': 'Residuals in standard deviations of the sensor, over time and over the phase of the cycle between '
                  'break-aways.  A pattern shows a deficiency of the model.  Red: a test rejects the model there.',
     'friction': 'Identified friction with its 95 % band, and the friction measured within slips: force on the slider '
@@ -120,7 +142,7 @@ def report_page(found: Identification, run: str, start: str, pictures: Mapping[s
 
 def caption(name: str) -> str:
     """Return the text below a picture."""
-    return _CAPTIONS.get(name, CAPTION)
+    return _CAPTIONS.get(name, PREDICTED)
 
 
 def _verdict(found: Identification) -> str:
@@ -347,3 +369,128 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else str(value)
     return value.item() if isinstance(value, np.generic) else value
+
+
+# Predictions of runs: a table and a picture for each, and values.
+
+PREDICTED = ('To the left the predicted motion (thin) over the measured one (thick, grey), to the right measured less '
+           'predicted.')
+_WHAT = 'RMSE', 'fit', 'largest error', 'RMSE / σ'
+
+
+def prediction_parts(prediction: Prediction, name: str) -> list[Part]:
+    """Return a prediction for people, under the name of its run."""
+    rows = [(in_words(one.name), quantity(one.rmse, one.unit, 4), _percent(one.fit_percent),
+             quantity(one.largest, one.unit, 4), _noises(one)) for one in prediction.channels]
+    if not math.isnan(prediction.stretch_fit):
+        rows.append(('stretch of the spring', '', _percent(prediction.stretch_fit), '', ''))
+    found = ', '.join(f'{one.name} {number_words(one.value, one.unit)}' for one in prediction.found)
+    return [Section(f'{prediction.scene.name} predicts {name}:', [
+        Table(('', *_WHAT), rows), f'found on it, and nothing else: {found}',
+        *(Sentence(note, NOTE) for note in prediction.notes)])]
+
+
+def write_predictions(predictions: Mapping[str, Prediction], folder: Path) -> None:
+    """Write report.html and report.json of predictions, by the names of runs, and a picture of each, into a folder."""
+    scene = next(iter(predictions.values())).scene
+    parts: list[Part] = []
+    for name, one in predictions.items():
+        draw_prediction(one, folder / f'{name}.svg')
+        parts += [*prediction_parts(one, name), Picture(folder / f'{name}.svg', PREDICTED)]
+    own = versions()
+    parts.append(Sentence(', '.join(f'{name} {version}' for name, version in own.items()), OTHER))
+    write_page(folder, f'{scene.name} predicts {", ".join(predictions)}', parts,
+               {'versions': own, 'scene': scene.name, 'scene_hash': scene.hash,
+                'predictions': prediction_values(predictions.values())})
+
+
+def draw_prediction(prediction: Prediction, path: Path) -> None:
+    """Draw the channels of a prediction, measured and predicted, and what is left."""
+    plot_prediction([PredictedChannel(one.name, one.unit, one.times, one.measured, one.fitted)
+                     for one in prediction.channels], path)
+
+
+def prediction_values(predictions: Iterable[Prediction]) -> list[dict[str, Any]]:
+    """Return predictions as values for JSON, SI."""
+    return [{'run': one.run, 'channels': [_channel_values(channel) for channel in one.channels],
+             'stretch_fit_percent': _number(one.stretch_fit), 'found': one.found, 'notes': one.notes}
+            for one in predictions]
+
+
+def _channel_values(channel: ChannelFit) -> dict[str, Any]:
+    return {'name': channel.name, 'unit': channel.unit, 'readings': len(channel.times),
+            'begin': float(channel.times[0]), 'end': float(channel.times[-1]), 'rmse': channel.rmse,
+            'fit_percent': _number(channel.fit_percent), 'largest': channel.largest,
+            'resolution': _number(channel.resolution)}
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _percent(value: float) -> str:
+    return 'undefined' if math.isnan(value) else f'{value:.4g} %'
+
+
+def _noises(channel: ChannelFit) -> str:
+    return f'{channel.rmse / channel.resolution:.3g}' if math.isfinite(channel.resolution) else '–'
+
+
+# All of it as a folder: a scene, what is left open of it, and the report as HTML and JSON.
+
+POSTERIOR = 'posterior.yaml'
+IDENTIFIED_PAGE = 'report.html'
+_WHOLE = 0.99   # of a run: so long a stretch is all of it
+
+
+def write_results(run: Run, found: Identification, start: str, folder: Path, name: str | None = None) -> None:
+    """Write the four files into a folder that exists, and inputs that were measured beside them.
+
+    `start` is the scene that was given, as it was named; `name` that of several runs, of which `run` is the first.
+
+    Raises OSError when the disk refuses.
+    """
+    start, name = Path(start).name, name or run.name
+    friction = known_friction(run, found)
+    values = report_values(found, name, start, friction)
+    page = report_page(found, name, start, _pictures(found, friction), values['versions'])
+    for name, text in input_texts(found).items():
+        (folder / name).write_text(text, encoding='utf-8')
+    (folder / IDENTIFIED_SCENE).write_text(identified_text(found, name, start), encoding='utf-8')
+    (folder / POSTERIOR).write_text(posterior_text(found, name), encoding='utf-8')
+    (folder / IDENTIFIED_VALUES).write_text(json.dumps(values, indent=1, allow_nan=False) + '\n', encoding='utf-8')
+    (folder / IDENTIFIED_PAGE).write_text(page, encoding='utf-8')
+
+
+def _pictures(found: Identification, friction: Mapping[str, KnownFriction]) -> dict[str, str]:
+    """Return the pictures as parts of a page, by their names."""
+    channels = fitted_channels(found)
+    names, window, share = [one.name for one in found.estimates], usual_cycles(found), slip_share(found)
+    drawn: dict[str, Callable[[Path], None]] = {
+        'fit': lambda path: plot_fit(channels, window, found.restarts, path),
+        'residuals': lambda path: plot_residuals(channels, share, path),
+        'friction': lambda path: plot_known_friction(friction, path),
+        'correlations': lambda path: plot_correlations(names, found.correlation, path),
+    }
+    for k, one in enumerate(found.predictions):
+        drawn[f'prediction_{k}'] = partial(draw_prediction, one)
+    with TemporaryDirectory() as folder:
+        return {name: _picture(Path(folder) / f'{name}.svg', draw) for name, draw in drawn.items()}
+
+
+def fitted_channels(found: Identification) -> list[FittedChannel]:
+    """Return the channels as they are drawn."""
+    return [FittedChannel(one.name, one.unit, one.times, one.measured, one.fitted, one.residuals / one.resolution,
+                          phases(found, one.times), misfit_spans(found, one), one.free) for one in found.channels]
+
+
+def misfit_spans(found: Identification, channel: ChannelFit) -> list[tuple[float, float]]:
+    """Return where a channel does not fit, s: the stretches; the whole run where no stretch by itself does not."""
+    spans = sorted({(one.from_time, one.to_time) for one in found.misfits if one.channel == channel.name})
+    whole = float(channel.times[-1] - channel.times[0])
+    return [span for span in spans if span[1] - span[0] < _WHOLE * whole] or spans
+
+
+def _picture(path: Path, draw: Callable[[Path], None]) -> str:
+    draw(path)
+    return figure(path, caption(path.stem))

@@ -14,12 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.arrays import Numbers
-from .certainty import QUANTILE, certainty_of, changes_by_inputs, covariance_by_inputs
+from .certainty import QUANTILE, certainty_of, changes_by_inputs, covariance_by_inputs, inflation_of
 from .fit_problem import FitProblem
 from .free_parameters import FreeParameter, Region, region_of
 from .identified import NOT_IDENTIFIABLE, Estimate, RunAlone, moved
 from .least_squares import minimise
-from .residual_tests import inflation_of
 from .stages import Ended
 
 _STEPS = 60
@@ -107,10 +106,7 @@ def joint_ends(fits: Sequence[RunFit], each: Container[str]) -> list[Ended]:
         whole = np.concatenate(parts)
         return whole if np.isfinite(whole).all() else np.full_like(whole, np.nan)
 
-    steps = np.zeros(layout.count)
-    for fit, places in zip(fits, layout.places, strict=True):
-        steps[places] = np.maximum(steps[places], fit.problem.steps)
-    solutions = [minimise(residuals, start, layout.region, most=_STEPS, tolerance=1e-3, step=steps)
+    solutions = [minimise(residuals, start, layout.region, most=_STEPS, tolerance=1e-3)
                  for start in _starts(fits, layout, inflations)]
     best = min(solutions, key=lambda one: one.cost if np.isfinite(one.cost) else np.inf)
     return [fit.end._replace(solution=best._replace(

@@ -14,13 +14,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.arrays import Numbers
-from .certainty import certainty_of
+from .certainty import certainty_of, is_rejected
 from .direct import friction_at_break_aways, static_residuals
 from .fit_problem import FitProblem, Stretches
 from .free_parameters import Region
 from .least_squares import STEP, Solution, minimise, robust_cost, square_cost, steps_over_jumps
 from .motions import MeasuredMotion
-from .residual_tests import is_rejected
 from .slip_features import MeasuredSlip
 
 # Points from which the whole run may be fitted: where the figures of single slips are best, from many trials.
@@ -33,7 +32,6 @@ N_STARTS, N_WHOLE = 8, 2   # fitted of them, the best by figures of slips and by
 ROBUST = 3.0            # figures of slips: beyond, a coarse fit counts their size
 _COARSE_STEP = 1e-5
 _STEEPEST = 1e4          # figures of slips over a logarithm: a hundred times in proportion
-_ASIDE = 0.2             # of a number, or of its range: so far off friction at rest may be
 _TRIAL_SLIPS = 5        # at each of them
 _SLIPS = 10             # at most, for the coarse fit
 _NEAR_START = 3.0             # of the cost of a slip, in the mean: a start that is fitted before others are tried
@@ -45,14 +43,11 @@ _APART = 1e-2           # of the widths of the ranges: nearer points are one sta
 def starts_of(problem: FitProblem, seed: int) -> Iterator[Numbers]:
     """Yield points to start from, by the figures of single slips: from the given start, then from many others.
 
-    Under a force that drives the slider by itself what it shows directly comes first, and then few others: those from
-    which the whole run is nearest.
+    Under a force that drives the slider by itself it is what that shows directly.
     """
     begin, places = _direct(problem)
     if problem.is_direct:
         yield begin
-        others = _nearest(problem, _trials_beside(problem, begin, seed))
-        yield from _distinct([begin, *others], problem)[1:]
         return
     chosen = _spread_slips(problem, _SLIPS)
     first = _coarse(problem, begin, chosen)
@@ -72,14 +67,6 @@ def _trials(problem: FitProblem, held: Region, seed: int) -> list[Numbers]:
     """Return trial points all over the region, in turn with those in a part of it that is `held`."""
     return [problem.region.inside(problem.with_direct((held if k % 2 else problem.region).at(share)))
             for k, share in enumerate(_shares(problem, seed))]
-
-
-def _trials_beside(problem: FitProblem, begin: Numbers, seed: int) -> list[Numbers]:
-    """Return trial points that differ from what a measured force shows in friction at rest, which it shows least."""
-    names = [one.name for one in problem.parameters]
-    far = np.array([_ASIDE if name.startswith('friction.static.') or name.endswith('.initial') else 0.0
-                    for name in names]) * np.where([one.logarithmic for one in problem.parameters], 1.0, problem.widths)
-    return [problem.region.inside(begin + far * (2.0 * share - 1.0)) for share in _shares(problem, seed)]
 
 
 def _shares(problem: FitProblem, seed: int) -> Numbers:
@@ -155,15 +142,15 @@ _NEARER = 10.0          # of the sum of squares: so much nearer a finer table mu
 _MOVES = 0.3            # or so far, in standard deviations, move a number
 _ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
 _FINER, _FINEST = 1 / 256, 1e-7   # times the tolerance of a table: a sixteenth of its steps; and a tolerance
+_BESIDE = 0.01, 0.02, 0.04, 0.08   # of a number, or of its range
+_FEW_STEPS = 4          # of a fit of the others beside it
+_TRIED = 40             # values of a parameter over its range
 _COARSER = 1.0, 1.0, 1.33, 1.6   # times the tolerance of a table that is held, in rounds
 _NEAR = 1e4             # a mean square up to which a table may bar the way in any case
 _FAR = 0.5              # of the sum of squares: so much it must gain far from the run
 _OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
 _GOOD = 1.2             # a mean square up to that
 _LOST = 100.0           # a mean square from which on the whole run is not followed
-_BESIDE = 0.01, 0.02, 0.04, 0.08   # of a number, or of its range
-_FEW_STEPS = 4          # of a fit of the others beside it
-_TRIED = 40             # values of a parameter over its range
 
 
 class Ended(NamedTuple):
@@ -186,8 +173,7 @@ class Ended(NamedTuple):
 def fit_from(problem: FitProblem, start: Numbers) -> Ended:
     """Return the best fit of the whole run from a point near it."""
     if problem.is_direct:   # the filtered residuals lead there, from any point where it breaks away as it did
-        nearer = _beyond_noise(problem, start)
-        return _whole_from(problem, start, start if nearer is None else nearer)
+        return _whole_from(problem, start, start)
     ended = _whole_from(problem, start, _nearer(problem, start))
     ahead = _ahead(problem, start) if ended.is_lost else None
     if ahead is None:
@@ -199,6 +185,9 @@ def _whole_from(problem: FitProblem, start: Numbers, point: Numbers) -> Ended:
     """Return the best fit of the whole run near a point, to which a start has led."""
     problem.model.take_tolerance(None)
     problem.take_input_noise_of(problem.values(point))
+    if (better := _beyond_noise(problem, point)) is not None:
+        point = better
+        problem.take_input_noise_of(problem.values(point))
     solution = _of_whole(problem, point)
     if (better := _beyond_noise(problem, solution.point)) is not None:
         solution = _of_whole(problem, better)
@@ -334,7 +323,7 @@ def _lost_from(problem: FitProblem) -> list[float]:
 def _mean_squares(problem: FitProblem, point: Numbers, part: Stretches) -> Numbers:
     """Return the mean square of the weighted residuals of a part of the run, of each channel (c,)."""
     channels = problem.measurement.channels
-    residuals = problem.of_stretches(point, part)[:-len(point)].reshape(len(channels), -1)
+    residuals = problem.of_channels(point, part)
     squares = np.array([own @ own / channel.weights[part.rows].sum()
                         for own, channel in zip(residuals, channels, strict=True)])
     return np.where(np.isfinite(squares), squares, np.inf)
