@@ -15,7 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from stickslip_sim.identification.prediction import predict
-from stickslip_sim.identification.prediction_report import draw_prediction
+from stickslip_sim.identification.report import draw_prediction
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene.load import changed
