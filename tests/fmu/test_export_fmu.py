@@ -30,8 +30,9 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(hot_path.UNIT is None, reason
               pytest.mark.filterwarnings('ignore::DeprecationWarning:lark')]
 LOAD = {'normal_load.course': 'sine', 'normal_load.constant': 500.0, 'normal_load.amplitude': 400.0,
         'normal_load.frequency': 7.0, 'drive.amplitudes': [5.0e-3, 2.0e-3], 'drive.frequencies': [3.0, 17.0]}
-SCENES = [*((name, {}) for name in scene_names()), ('paper_fig8', LOAD)]
-IDS = [*scene_names(), 'a varying load and sinusoids']
+SCENES = [*((name, {}) for name in scene_names()), ('paper_fig8', LOAD),
+          ('paper_fig7', {'friction.static.scatter': 0.1, 'seed': 7})]
+IDS = [*scene_names(), 'a varying load and sinusoids', 'scatter']
 FIRST_OUTPUT, EVENT_COUNT = 10, 30
 SAMPLE = range(FIRST_OUTPUT, FIRST_OUTPUT + len(Sample._fields) - 2)
 DRIVE, FORCE, NORMAL, MASS = 1, 2, 3, 40

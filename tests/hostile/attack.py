@@ -99,7 +99,7 @@ def judge_again(case: Case, tag: str, reference_too: bool = True) -> list[tuple[
 def _others(done: Run, tag: str, share: float, tally: Counts, name: str) -> Iterator[tuple[str, str]]:
     rng = random.Random(tag + '/judges')
     judges: dict[str, Callable[[], object]] = {judge: partial(work, done, rng) for judge, work in JUDGES.items()}
-    if done.parts.load is not None:
+    if done.parts.load is not None or done.parts.axis.friction.static.scatter is not None:
         judges['brute'] = partial(brute.judge, done)
     if random.Random(tag + '/reference').random() < share:
         judges['reference'] = partial(reference.judge, done)

@@ -36,6 +36,8 @@ typedef struct {
     double velocity, rest_time, stretch, deflection, duration, steps;
     Side sides[2];               /* forwards, backwards */
     Profile drive, force, normal;
+    int sticks;                  /* how many factors on mu_s there are, one for each stick; the last one stays */
+    const double *factors;
 } Problem;
 
 typedef struct {
@@ -55,6 +57,7 @@ typedef struct {
     Row *rows;
     int count, most;
     R swing;                           /* the largest force that turned the slider since something held it */
+    int stick;                         /* the place of its factor */
 } Axis;
 
 static R input(const Profile *f, int piece, R t) {
@@ -77,15 +80,17 @@ static R drive_at(const Axis *a, R t) { return input(&a->p->drive, a->piece[0], 
 static R normal_at(const Axis *a, R t) { return input(&a->p->normal, a->piece[2], t); }
 static const Side *side_of(const Axis *a, int direction) { return &a->p->sides[direction > 0 ? 0 : 1]; }
 
-static R static_coefficient(const Side *s, R age) {
-    R rise = (R)s->limit - (R)s->initial, z;
-    if (s->law == CONSTANT) return s->initial;
-    if (isinf((double)age)) return s->limit;
+static R static_coefficient(const Axis *a, const Side *s, R age) {
+    double factor = a->p->factors[a->stick], initial = fmax(factor * s->initial, s->coefficients[0]);
+    double limit = fmax(factor * s->limit, initial);
+    R rise = (R)limit - (R)initial, z;
+    if (s->law == CONSTANT) return initial;
+    if (isinf((double)age)) return limit;
     z = (age > (R)s->delay ? age - (R)s->delay : 0) / (R)s->time_constant;
-    if (s->law == EXPONENTIAL) return (R)s->initial - rise * expm1l(-z);
-    if (s->law == KATO) return (R)s->initial - rise * expm1l(-powl(z, (R)s->exponent));
-    if (s->law == HYPERBOLIC) return (R)s->initial + rise * z / (1 + z);
-    return (R)s->initial + rise * log1pl(z);
+    if (s->law == EXPONENTIAL) return (R)initial - rise * expm1l(-z);
+    if (s->law == KATO) return (R)initial - rise * expm1l(-powl(z, (R)s->exponent));
+    if (s->law == HYPERBOLIC) return (R)initial + rise * z / (1 + z);
+    return (R)initial + rise * log1pl(z);
 }
 
 /* the line of a table on the segment that begins at or below a speed (strictly below it, where the speed falls) */
@@ -197,7 +202,7 @@ static void guards(const Axis *a, R t, const State *y, R g[2], R scale[2]) {
     if (a->mode == STICK) {
         R force = a->p->compliant && !a->p->by_drive ? contact_force(a, y) : net_force(a, t, y);
         R age = a->age + t;
-        for (int k = 0; k < 2; k++) g[k] = normal * static_coefficient(&a->p->sides[k], age) - (k ? -force : force);
+        for (int k = 0; k < 2; k++) g[k] = normal * static_coefficient(a, &a->p->sides[k], age) - (k ? -force : force);
     } else if (a->mode == COASTING) {
         g[0] = a->direction * net_force(a, t, y) - normal * kinetic(a, y->u);
         g[1] = normal * raised(a, y->u) - g[0];
@@ -264,9 +269,12 @@ static void begin_slip(Axis *a, int direction, R coefficient) {
     begin_branch(a, mode);
 }
 
+static void next_stick(Axis *a) { if (a->stick + 1 < a->p->sticks) a->stick++; }
+
 static void arrest(Axis *a) {
     int back = -a->direction;
-    R normal = normal_at(a, a->t), holds = normal * static_coefficient(side_of(a, back), 0);
+    next_stick(a);
+    R normal = normal_at(a, a->t), holds = normal * static_coefficient(a, side_of(a, back), 0);
     a->y.u = 0;
     if (normal == 0) {
         R force = fabsl(net_force(a, a->t, &a->y));
@@ -279,7 +287,7 @@ static void arrest(Axis *a) {
         R beyond = back * net_force(a, a->t, &a->y) - holds;
         if (fabsl(beyond) < GRAZE * force_scale(a, a->t, &a->y)) a->doubtful = 1;
         if (beyond > NOTHING * force_scale(a, a->t, &a->y)) {
-            begin_slip(a, back, static_coefficient(side_of(a, back), 0));
+            begin_slip(a, back, static_coefficient(a, side_of(a, back), 0));
             list(a, REVERSE, back);
             return;
         }
@@ -298,7 +306,7 @@ static void follow_limit(Axis *a) {
 }
 
 static void leave_stick(Axis *a, int sign) {
-    R coefficient = static_coefficient(side_of(a, sign), a->age + a->t);
+    R coefficient = static_coefficient(a, side_of(a, sign), a->age + a->t);
     R speed = force_scale(a, a->t, &a->y) * a->inverse / (R)a->p->mass;
     int moves = fabsl(a->y.u) > NOTHING * speed ? (a->y.u > 0 ? 1 : -1) : 0, direction = sign;
     if (a->p->compliant && a->p->by_drive) {
@@ -324,6 +332,7 @@ static void follow(Axis *a, int which) {
         leave_stick(a, which ? -1 : 1);
     } else if (old == YIELDING && which == 0) {
         a->mode = STICK;
+        next_stick(a);
         a->age = -a->t;
         list(a, STOP, a->direction);
     } else if (old == YIELDING) {
@@ -453,7 +462,7 @@ static void change_inputs(Axis *a) {
 /* Return the number of events, or −1 where they, or the steps, do not end. */
 int brute_force(const Problem *p, Row *rows, int most) {
     Axis a = { p, 0, p->rest_time, 0, 0, -1, 0, 0, 0, 0, STICK, 1, {0, 0, 0},
-               { p->stretch, p->velocity, p->deflection }, 0, 0, rows, 0, most };
+               { p->stretch, p->velocity, p->deflection }, 0, 0, rows, 0, most, 0, 0 };
     R longest = 0, border, h = 0, g0[2], scale[2], entered = -1;
     State entry = a.y;
     int armed[2], sinks[2] = { 1, 1 }, fresh = 1, here = 0, steps = 0;
@@ -525,7 +534,7 @@ int brute_force(const Problem *p, Row *rows, int most) {
 /* ---- a segment between two events, as a solver has it -------------------------------------------------------------- */
 
 typedef struct {
-    int mode, direction;
+    int mode, direction, stick;
     double second, fraction, length, stretch, velocity, deflection, excess, rest_time;
     double noise[4];             /* of stretch, velocity, deflection, excess */
     double rounding, margin;     /* of a force, of all forces; so much more is a find */
@@ -592,7 +601,7 @@ int follow_segment(const Problem *p, const Segment *s, Verdict *v) {
         State y = { (R)s->stretch + (i == 1) * (R)s->noise[0], (R)s->velocity + (i == 2) * (R)s->noise[1],
                     (R)s->deflection + (i == 3) * (R)s->noise[2] };
         Axis one = { p, begin, (R)s->rest_time - begin, (R)s->excess + (i == 4) * (R)s->noise[3], 0, -1, 0, 0, 0, 0,
-                     s->mode, s->direction, {0, 0, 0}, y, 0, 0, 0, 0, 0 };
+                     s->mode, s->direction, {0, 0, 0}, y, 0, 0, 0, 0, 0, 0, s->stick };
         for (int k = 0; k < 3; k++)
             while (one.piece[k] + 1 < inputs[k]->pieces && inputs[k]->start[one.piece[k] + 1] <= begin) one.piece[k]++;
         find_segment(&one, fabsl((R)s->velocity), s->mode == DECELERATING);

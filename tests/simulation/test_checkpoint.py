@@ -35,7 +35,8 @@ SINES = {'force.course': 'sine', 'force.amplitude': 200.0, 'force.frequency': 7.
 LOADS = {'normal_load.course': 'steps', 'normal_load.times': [0.0, 0.15, 0.2503], 'normal_load.period': 0.4,
          'normal_load.forces': [0.0, -3000.0, 900.0]}
 SCENES = [('paper_fig8', LIMITS), ('paper_fig7', SINES), ('cutting_force', {}), ('paper_fig8', LOADS),
-          ('paper_fig8', {'solver.name': 'fixed_step', 'solver.step': 1e-4})]
+          ('paper_fig8', {'solver.name': 'fixed_step', 'solver.step': 1e-4}),
+          ('paper_fig8', {'friction.static.scatter': 0.2, 'drive.velocity': 0.02})]
 
 
 def go(rig: Rig, scene: Scene, first: int, count: int) -> list[StepResult]:

@@ -17,12 +17,13 @@ def printed(rows):
 '''
 LOAD = {'normal_load.course': 'sine', 'normal_load.constant': 500.0, 'normal_load.amplitude': 400.0,
         'normal_load.frequency': 7.0}
+SCATTER = {'friction.static.scatter': 0.2, 'friction.static.scatter_run': 0.1, 'seed': 2 ** 62}
 STEPS = [{'solver.name': 'fixed_step', 'solver.method': method, 'solver.step': 1e-3} for method in ('euler', 'rk4')]
 SCENES = f'''
 from fractions import Fraction
 from itertools import product
 from stickslip_sim import load_scene, scene_names, simulate
-for overrides, name in product({[{}, *STEPS, LOAD]!r}, scene_names()):
+for overrides, name in product({[{}, *STEPS, LOAD, SCATTER]!r}, scene_names()):
     run = simulate(load_scene(name, overrides), 2.0, Fraction(1, 10))
     printed(run.events)
     printed(run.sample_rows())

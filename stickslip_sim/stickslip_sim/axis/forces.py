@@ -5,8 +5,8 @@
 import math
 from typing import NamedTuple
 
-from ..core.hot_path import inlined
-from ..friction.static import static_coefficient
+from ..core.hot_path import compiled, inlined
+from ..friction.static import static_coefficient, stick_factor
 from .codes import ACCELERATING, COASTING, STICK, YIELDING
 from .layout import Parameters
 from .sinusoids import forced_rate
@@ -197,8 +197,8 @@ class StaticNumbers(NamedTuple):
 def static_numbers(p: Parameters, side: float) -> StaticNumbers:
     """Return the numbers of the static law against a force of this sign."""
     if side < 0.0 and p.sided != 0.0:
-        return StaticNumbers(p.backward_initial, p.backward_limit, p.backward_tau, p.backward_exponent)
-    return StaticNumbers(p.static_initial, p.static_limit, p.static_tau, p.static_exponent)
+        return StaticNumbers(p.stick_backward_initial, p.stick_backward_limit, p.backward_tau, p.backward_exponent)
+    return StaticNumbers(p.stick_initial, p.stick_limit, p.static_tau, p.static_exponent)
 
 
 @inlined
@@ -225,7 +225,36 @@ def lower_limit(p: Parameters, rest: float) -> float:
 @inlined
 def static_at_once(p: Parameters, side: float) -> float:
     """Return mu_s at rest time 0 against a force of this sign."""
-    return p.backward_initial if side < 0.0 else p.static_initial
+    return p.stick_backward_initial if side < 0.0 else p.stick_initial
+
+
+@inlined
+def take_stick(p: Parameters, s: State) -> None:
+    """Let the parameters have the static law of the state's stick."""
+    if p.drawn_sticks != s.sticks + 1.0:
+        _draw_stick(p, s.sticks)
+
+
+@inlined
+def begin_stick(p: Parameters, s: State) -> None:
+    """Let the next stick have a static law of its own, where that scatters."""
+    if p.scatter != 0.0:
+        s.sticks += 1.0
+        _draw_stick(p, s.sticks)
+
+
+@compiled
+def _draw_stick(p: Parameters, stick: float) -> None:
+    p.drawn_sticks = stick + 1.0
+    p.stick_initial, p.stick_limit = p.static_initial, p.static_limit
+    p.stick_backward_initial, p.stick_backward_limit = p.backward_initial, p.backward_limit
+    if p.scatter == 0.0 and p.scatter_run == 0.0:
+        return
+    factor = stick_factor(p.seed, p.scatter, p.scatter_run, stick)
+    p.stick_initial = max(factor * p.static_initial, kinetic_at_rest(p, 1.0))
+    p.stick_limit = max(factor * p.static_limit, p.stick_initial)
+    p.stick_backward_initial = max(factor * p.backward_initial, kinetic_at_rest(p, -1.0))
+    p.stick_backward_limit = max(factor * p.backward_limit, p.stick_backward_initial)
 
 
 @inlined

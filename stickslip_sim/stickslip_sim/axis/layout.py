@@ -54,6 +54,14 @@ class Parameters:
     backward_exponent: float
     backward_segment: float   # index of the first segment backwards; 0: the same table
     normal_rate: float        # N/s, of the normal force but for its sinusoids
+    seed: float               # key of the draws of the static law's scatter
+    scatter: float            # relative standard deviation of mu_s from stick to stick
+    scatter_run: float        # and from run to run
+    drawn_sticks: float       # 1 + the index of the stick whose mu_s follows; 0: none was drawn yet
+    stick_initial: float      # mu_0 and mu_inf of that stick, forwards
+    stick_limit: float
+    stick_backward_initial: float   # and backwards
+    stick_backward_limit: float
     segments: list[Segment]
 
     def __init__(self, numbers: Sequence[float]) -> None:
@@ -67,5 +75,5 @@ PARAMETER_FIELDS, SEGMENT_FIELDS = names_of(Parameters), names_of(Segment)
 # where the numbers of `pack` stand
 (MASS, STIFFNESS, DAMPING, _, NORMAL, COMPLIANT, CONTACT_STIFFNESS, CONTACT_DAMPING, _, _, STATIC_LAW, STATIC_INITIAL,
  STATIC_LIMIT, STATIC_TAU, STATIC_EXPONENT, _, BRANCHES, END_SLOPE, SEGMENT_COUNT, SIDED, BACKWARD_INITIAL,
- BACKWARD_LIMIT, BACKWARD_TAU, BACKWARD_EXPONENT, BACKWARD_SEGMENT, _, TABLE) = range(27)
+ BACKWARD_LIMIT, BACKWARD_TAU, BACKWARD_EXPONENT, BACKWARD_SEGMENT, _, _, _, _, _, _, _, _, _, TABLE) = range(35)
 SEGMENT_SIZE = len(SEGMENT_FIELDS)

@@ -13,6 +13,7 @@ from .codes import ACCELERATING, COASTING, DECELERATING, STICK, YIELDING
 from .forces import (
     ROUNDING,
     applied_force,
+    begin_stick,
     contact_force,
     first_segment,
     force_rate,
@@ -105,6 +106,7 @@ def break_away(p: Parameters, s: State, direction: float, limit: float, margin: 
     s.rest = 0.0
     s.deflection = 0.0
     if not choose_slip(p, s, residual, lower, tolerance):
+        begin_stick(p, s)
         rest(p, s)
 
 

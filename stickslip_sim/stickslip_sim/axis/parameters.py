@@ -63,6 +63,9 @@ class Friction:
         if back.static.delay != self.static.delay:
             raise InputError('friction.static.backward.delay', back.static.delay,
                              f'{self.static.delay!r} s, as forwards', 'the rest of a contact has no direction')
+        if back.static.scatter != self.static.scatter:
+            raise InputError('friction.static.backward.scatter', back.static.scatter,
+                             f'{self.static.scatter!r}, as forwards', 'a stick has one draw for both directions')
         if (back.excess is None) != (self.excess is None):
             raise InputError('friction.excess.backward', back.excess, 'given in both directions or in none',
                              'friction.acceleration_dependence is for both')
@@ -191,4 +194,6 @@ def pack(axis: Axis) -> Sequence[float]:
             float(friction.excess is not None), friction.kinetic.end_slope, float(sum(map(len, tables))),
             float(friction.backward is not None), back.initial, back.limit, back.time_constant, back.exponent,
             float(len(tables[0])) if friction.backward is not None else 0.0, 0.0,
+            *((scatter.key, scatter.deviation, scatter.of_run) if (scatter := static.scatter) else (0.0, 0.0, 0.0)),
+            0.0, static.initial, static.limit, back.initial, back.limit,
             *(number for table in tables for breakpoint in table for number in breakpoint)]

@@ -192,6 +192,7 @@ class State:
     series_end: float         # s, H of the series below
     series_error: float       # m/s, bound on what their velocity is off by within H, see `axis.slip_series`
     swing: float              # N, the largest force at a standstill since N mu_s was last more than 0
+    sticks: float             # where the static law scatters: begun so far, the one that a run may begin with aside
     # of the axis
     inputs: InputsRecord
     oscillator: OscillatorRecord   # of the mode

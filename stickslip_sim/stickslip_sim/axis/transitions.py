@@ -25,6 +25,7 @@ from .forces import (
     ROUNDING,
     applied_force,
     band_of,
+    begin_stick,
     breakpoint_speed,
     contact_force,
     drive_force,
@@ -88,6 +89,7 @@ def arrest(p: Parameters, s: State, events: Events, row: int) -> None:
         _hold_again(p, s, events, row)
         return
     s.velocity = 0.0
+    begin_stick(p, s)
     note_swing(p, s)
     friction = s.direction * p.normal_force * kinetic_at_rest(p, s.direction)
     force = applied_force(p, s)
@@ -151,6 +153,7 @@ def _direction_out(p: Parameters, s: State, force: float) -> float:
 
 @inlined
 def _hold_again(p: Parameters, s: State, events: Events, row: int) -> None:
+    begin_stick(p, s)
     held = contact_force(p, s.deflection, s.velocity)
     write_event(p, s, events, row, ARREST, s.direction, held, static_at_once(p, s.direction))
     events.rows[row].mode = s.mode = STICK
@@ -275,6 +278,7 @@ def _press_yielding(p: Parameters, s: State, events: Events, row: int) -> bool:
     direction = s.direction
     if holds_by_drive(p):   # another contact since, which does not yield
         s.mode, s.direction = STICK, 0.0
+        begin_stick(p, s)
         if not _press_stick(p, s, events, row):
             held = friction_force(p, s, s.deflection, s.velocity, applied_force(p, s))
             write_event(p, s, events, row, ARREST, direction, held, static_at_once(p, direction))

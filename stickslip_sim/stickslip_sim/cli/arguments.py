@@ -133,6 +133,10 @@ class SceneChanges(NamedTuple):
     overrides: tuple[str, ...]
     meant: tuple[str, ...]
 
+    def also(self, override: str) -> 'SceneChanges':
+        """Return the changes with one more, as of --set."""
+        return self._replace(overrides=(*self.overrides, override))
+
     def given(self) -> dict[str, object]:
         """Return the changed values by dotted name; raises InputError."""
         from ..scene import parse_override

@@ -22,9 +22,11 @@ from .files import FOLDER, PICTURE, STDOUT, TEXT, draw, progress_bar, say_writte
 @click.option('--receipt', type=TEXT, metavar='FILE.json', help='Write versions, figures, energy, error and cost.')
 @click.option('--plot', type=PICTURE, metavar='FILE.png',
               help='Plot the run, like `stickslip plot` (.png, .pdf or .svg).')
+@click.option('--seed', type=int, metavar='SEED', help='Seed of all random numbers [default: `seed` of the scene].')
 @scene_changes('Change a parameter of the scene.')
-def simulate(scene: str, changes: SceneChanges, duration: float, events: str | None, knots: bool, samples: str | None,
-             sample_period: float | None, bag: str | None, receipt: str | None, plot: str | None) -> None:
+def simulate(scene: str, changes: SceneChanges, duration: float, seed: int | None, events: str | None, knots: bool,
+             samples: str | None, sample_period: float | None, bag: str | None, receipt: str | None, plot: str | None
+             ) -> None:
     """Simulate SCENE, a shipped scene or a file, and print a summary.
 
     The summary is omitted if something else is written to standard output ("-").
@@ -42,7 +44,7 @@ def simulate(scene: str, changes: SceneChanges, duration: float, events: str | N
     from .csv_tables import event_lines, sample_lines
 
     check_run_times(duration, sample_period)
-    loaded = changes.load(scene)
+    loaded = (changes if seed is None else changes.also(f'seed={seed}')).load(scene)
     with progress_bar('simulating') as progress:
         if samples or bag:
             run = simulate_sampled(loaded, duration, sample_period or loaded.time.step, progress)

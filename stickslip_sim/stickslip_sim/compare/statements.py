@@ -433,7 +433,8 @@ def _start_balance_finding(run: Run, _: Sequence[object]) -> Finding:
     spring = axis.drive_stiffness * (first['drive_position'] - first['position'])
     outside = first[APPLIED]
     held = first['friction_force'] if isinstance(axis.contact, CompliantContact) else spring + outside
-    static = axis.friction.along(held).static
+    friction = axis.friction.along(held)
+    static = friction.static.of_stick(0, friction.kinetic.coefficients[0])
     limit = run.scene.normal_force.value_at(0.0) * static.coefficient(first['rest_time'])
     open_by = abs(spring + outside - held)
     text = f'drive spring {spring:.6g} N, outside {outside:.6g} N, contact {held:.6g} N of at most {limit:.6g} N'
@@ -462,6 +463,8 @@ def _long_rest_finding(run: Run, _: Sequence[object]) -> Finding:
         return not_applicable(f'the first break-away follows a rest of {first.rest_time:.4g} s, not a prolonged one')
     if law.coefficient(math.inf) == law.initial or axis.normal_force == 0.0:
         return not_applicable('static friction does not grow with the rest time')
+    if law.scatter is not None:
+        return not_applicable('static friction scatters from stick to stick')
     if run.scene.normal_load is not None:
         return not_applicable('the normal force varies, and the limit with it')
     limit, force = law.coefficient(math.inf) * axis.normal_force, abs(first.friction_force)

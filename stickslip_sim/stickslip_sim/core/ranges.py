@@ -49,3 +49,4 @@ KATO_EXPONENT = Range(1e-2, 1e2)
 TOLERANCE = Range(1e-12, 1.0)            # of a table
 FACTOR = Range(0.0, 100.0)                # on all of friction
 SHARE = Range(0.0, 1.0)
+SCATTER = Range(0.0, 0.5)                # relative standard deviation of a coefficient

@@ -15,7 +15,7 @@ const WORDS = {   // how a parameter is called, the factor of its unit, and that
   "friction.kinetic.exponent": ["exponent δ"], "friction.kinetic.viscous": ["viscous part"], "friction.acceleration_dependence": ["depends on acceleration"],
 };
 const GROUPS = {"Drive": /^(drive\.(velocity|acceleration)|axis\.drive_(stiffness|damping))$/, "Slider": /^(axis\.(mass|normal_force)|force\.constant)$/, "Contact in stick": /^contact\.(model|stiffness|damping)$/,
-  "Static friction": /^friction\.static\./, "Kinetic friction": /^friction\.(kinetic\.(?!tolerance)|acceleration_dependence)/};
+  "Static friction": /^friction\.static\.(?!scatter)/, "Kinetic friction": /^friction\.(kinetic\.(?!tolerance)|acceleration_dependence)/};
 const MOST_POINTS = 4, STEPS = 1000, FIRST_SAMPLES = 2000;   // the first picture comes before the browser has compiled the engine
 let values, opened, run_, shownTime = null, index = 0, isPlaying = !matchMedia("(prefers-reduced-motion: reduce)").matches, stripJob = null, labelJob = null, touring = null, pending = null, hovered = false;
 const history_ = [], costs = [];

@@ -51,7 +51,8 @@ def page_of(scene: Scene, beside: Mapping[str, list[float]] | None = None) -> st
 
 def _is_beyond(name: str, value: object) -> bool:
     """Return whether a page cannot run this; it says so itself of scenes that are opened there."""
-    only = {'solver.name': 'exact', 'friction.scale': 1.0}
+    only = {'solver.name': 'exact', 'friction.scale': 1.0, 'friction.static.scatter': 0.0,
+            'friction.static.scatter_run': 0.0}
     return (value != only.get(name, value) or (name, value) == ('drive.course', 'position') or '.backward.' in name
             or name in ('normal_load.course', 'faults.kinds'))
 

@@ -208,6 +208,7 @@ function checkRunnable(v) {
     ["normal_load.course" in v, "a normal_load over time", "its normal force is constant"],
     [Object.keys(v).some(name => name.includes(".backward.")), "friction that differs backwards", "it has one friction for both directions"],
     [(v["friction.scale"] ?? 1) !== 1, "friction.scale", "scale the coefficients themselves"],
+    [v["friction.static.scatter"] || v["friction.static.scatter_run"], "friction.static.scatter", "its static friction has no scatter: set it to 0"],
     ["faults.kinds" in v, "faults", "inject them with stickslip simulate"],
   ].find(([is]) => is);
   if (cannot) throw new Refusal(`this page cannot run ${cannot[1]}: ${cannot[2]}`);
@@ -228,7 +229,7 @@ function axisOf(v) {
     arrest_share: +!(isCompliant && v["contact.arrest"] === "undeflected"), ends_by_drive: +(isCompliant && v["contact.break_away"] === "drive_force"),
     static_law: ENTRY["friction.static.law"].choices.indexOf(law), static_initial: initial, static_limit: limit, static_tau: v["friction.static.time_constant"] ?? 1,
     static_exponent: v["friction.static.exponent"] ?? 1, static_delay: v["friction.static.delay"] ?? 0, branches: +Boolean(excess), end_slope: kinetic.endSlope,
-    segment_count: speeds.length, sided: 0, backward_segment: 0, normal_rate: 0,
+    segment_count: speeds.length, sided: 0, backward_segment: 0, normal_rate: 0, seed: 0, scatter: 0, scatter_run: 0, drawn_sticks: 0,
   });
   Object.assign(p, {backward_initial: p.static_initial, backward_limit: p.static_limit, backward_tau: p.static_tau, backward_exponent: p.static_exponent});
   p.segments = speeds.map((speed, i) => Object.assign(new Segment(), {

@@ -4,10 +4,10 @@
 
 from .kinetic import ExcessTable, KineticTable
 from .smooth import SmoothExcess, SmoothKinetic
-from .static import StaticLaw, StaticLawKind
+from .static import Scatter, StaticLaw, StaticLawKind
 from .tables import excess_table, kinetic_table
 
 __all__ = [
-    'ExcessTable', 'KineticTable', 'SmoothExcess', 'SmoothKinetic', 'StaticLaw', 'StaticLawKind', 'excess_table',
-    'kinetic_table',
+    'ExcessTable', 'KineticTable', 'Scatter', 'SmoothExcess', 'SmoothKinetic', 'StaticLaw', 'StaticLawKind',
+    'excess_table', 'kinetic_table',
 ]

@@ -6,6 +6,7 @@ What is in here, from the top floor down; each imports only from the floors belo
 
     identify           the verb: from a run to what was found in it, with intervals, tests and slips
     run_friction       the friction curve out of a run
+    break_away_scatter how break-aways scatter around the static law
     prediction         a scene along a run that it was not identified from
     other_laws         the run fitted with other laws, and the criterion that compares them
     report             what was found or predicted, as lines, page, values and a folder

@@ -121,6 +121,7 @@ def put_in_order(values: dict[str, object]) -> None:
 
 OUTPUT_PLACES = {name: Sample._fields.index(name) for name in OUTPUTS}
 _TOLERANCE = 'friction.kinetic.tolerance'
+_MEAN_LAW = {'friction.static.scatter': 0.0, 'friction.static.scatter_run': 0.0}   # no draw is that of a measured stick
 _BELOW = 1.0 - 1e-12   # of what the contact holds: rounding must not break it
 
 
@@ -189,7 +190,7 @@ class AxisModel:
     def dynamics(self, values: Numbers) -> Dynamics | None:
         """Return the axis and its inputs with trial values; None where these contradict each other."""
         try:
-            found = dynamics_of(self._with_table(self._values(values)))
+            found = dynamics_of(self._with_table(self._values(values)) | _MEAN_LAW)
         except StickslipError:
             return None
         force = self._measurement.force

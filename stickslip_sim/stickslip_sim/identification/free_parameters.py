@@ -25,6 +25,7 @@ from .readings import UNITS
 
 DELAY = 'delay'
 _OFFSET, _SCALE = 'offset', 'scale'
+_SCATTER = 'friction.static.scatter'   # left out: 0
 _MOST = 40   # parameters: about as many as an axis has
 
 
@@ -117,7 +118,7 @@ def _free(scene: Scene, distribution: Distribution) -> FreeParameter:
 def _start(scene: Scene, name: str) -> float:
     """Return the value in the scene to start from; raises InputError where the scene has no such parameter."""
     entry, index = _parameter(name)
-    value = scene.values.get(entry.name, entry.default)
+    value = scene.values.get(entry.name, 0.0 if entry.name.startswith(_SCATTER) else entry.default)
     if entry.when is not None and not entry.when.holds(scene.values):
         raise InputError('free parameter', name, f'one that the laws of the scene have: it goes with {entry.when}',
                          'leave it out, or choose that law in the scene to start from')

@@ -22,6 +22,7 @@ from ..scene import Scene, changed
 from ..scene.load import named
 from ..study.variation import changes_at
 from .axis_model import AxisModel
+from .break_away_scatter import sought_scatter, with_scatter
 from .certainty import (
     QUANTILE,
     Certainty,
@@ -191,7 +192,7 @@ def _slips(problem: FitProblem, values: Numbers) -> tuple[SlipFit, ...]:
     assert dynamics is not None
     found = []
     for measured in problem.sharp_slips:
-        rest, force = shown_break_away(problem.model, dynamics, values, measured, problem.track)
+        rest, force, _ = shown_break_away(problem.model, dynamics, values, measured, problem.track)
         since = measured.rest_begin + problem.measurement.shift
         found.append(SlipFit(since + measured.slip.rest, since + rest, measured.slip.rest, rest,
                              measured.slip.break_away, force))
@@ -268,11 +269,13 @@ def identify(run: Given | Sequence[Given], start: SceneOrName, free: str | Path 
     began = time.perf_counter()
     say = progress or (lambda stage, share: None)
     scene = scene_of(start)
-    parameters = free_parameters(scene, free)
+    parameters, scatter = sought_scatter(free_parameters(scene, free))
     runs = [*map(run_of, run)] if isinstance(run, Sequence) and not isinstance(run, str) else [run_of(run)]
     tests = [*map(run_of, test)]
     check_distinct([*runs, *tests])
     _check_several(runs, parameters, each, laws)
+    if scatter is not None and len(runs) > 1:
+        raise InputError('free parameter', scatter.name, 'left out with several runs', 'find it in one of them')
     problems, ends = [], []
     for one in runs:
         with named(one.name) if len(runs) > 1 else nullcontext():
@@ -291,6 +294,8 @@ def identify(run: Given | Sequence[Given], start: SceneOrName, free: str | Path 
     else:
         identified = identification_of(problems[0], problems[0].model.scene, ends[0], began)
         identified = with_laws(identified, problems[0], workers, keeper, say) if laws else identified
+    if scatter is not None:
+        identified = with_scatter(identified, problems[0], scatter)
     also = [_along(identified, one, own.own) for one, own in zip(runs[1:], identified.alone[1:])]
     return replace(identified, predictions=(*also, *(predict(identified, one) for one in tests)))
 

@@ -308,7 +308,7 @@ def _in_direction(run: Run, found: Identification, direction: float) -> KnownFri
         _accelerating(found, speeds, rests, direction),
         Scatter(speeds, kinetic(found.start)), Scatter(*points), Bins(*binned(points)),
         Band(times, static(found.scene), half_width(found, static)), Scatter(times, static(found.start)),
-        Scatter(rests, forces))
+        Scatter(rests, forces), law.scatter.deviation if (law := found.scene.axis.friction.static).scatter else 0.0)
 
 
 def _accelerating(found: Identification, speeds: Numbers, rests: Numbers, direction: float) -> Band | None:

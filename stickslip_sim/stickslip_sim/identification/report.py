@@ -352,7 +352,7 @@ def _friction(friction: KnownFriction) -> dict[str, Any]:
         'measured': {'speed': bins.places.tolist(), 'median': bins.middles.tolist(),
                      'lower_quartile': bins.low.tolist(), 'upper_quartile': bins.high.tolist()},
         'break_aways': {'rest_time': friction.break_aways.places.tolist(),
-                        'coefficient': friction.break_aways.values.tolist()},
+                        'coefficient': friction.break_aways.values.tolist(), 'scatter': friction.scatter},
     }
 
 

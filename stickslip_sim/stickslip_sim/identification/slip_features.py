@@ -206,28 +206,36 @@ def _slip(begin: Event, end: Event, rows: Numbers, still: float) -> SlipFigures:
                        np.array([*rows[:2, _FORCE_PLACE]]), at, float(np.interp(at, times, slip[:, _FORCE_PLACE])))
 
 
-def shown_break_away(model: AxisModel, dynamics: Dynamics, values: Numbers, measured: MeasuredSlip, track: Track
-                     ) -> tuple[float, float]:
-    """Return the time at rest before the simulated slip (s), and the force at its end (N), as sensors would show them.
+class ShownBreakAway(NamedTuple):
+    """A simulated break-away as sensors would show it: `rest` before it, s, the `force`, N, and how `late` it is, s."""
 
-    Its samples go through the filter of the measured ones.  NaN where the model does no such slip.
+    rest: float
+    force: float
+    late: float
+
+
+def shown_break_away(model: AxisModel, dynamics: Dynamics, values: Numbers, measured: MeasuredSlip, track: Track
+                     ) -> ShownBreakAway:
+    """Return the break-away of the simulated slip as sensors would show it; NaN where the model does no such slip.
+
+    Its samples go through the filter of the measured ones.
     """
     initial = model.state_after(measured.before, dynamics, values)
     length = measured.motion.end - measured.rest_begin
     motion = model.motion(dynamics, measured.rest_begin, initial, _LONGER[-1] * length)
     ends = None if motion is None else _ends(motion.events, _PART * abs(measured.slip.way))
     if motion is None or ends is None:
-        return float('nan'), float('nan')
+        return ShownBreakAway(*[float('nan')] * 3)
     period = float(track.times[1] - track.times[0])
     times = np.arange(int(ends[1].time / period) + track.smoothing + 2).astype(np.float64) * period
     rows = model.samples(dynamics, measured.rest_begin, initial, instants_of(times))
     if rows is None:
-        return float('nan'), float('nan')
+        return ShownBreakAway(*[float('nan')] * 3)
     velocity = rows[:, _VELOCITY] if track.smoothing == 1 else slope_of(rows[:, _POSITION], period, track.smoothing)
     in_slip = times <= ends[1].time + period
     at = begin_of_slip(times[in_slip], np.sign(ends[1].position - ends[0].position) * velocity[in_slip], measured.still)
     offset, scale = model.gain(values, 'drive_force')
-    return at, offset + scale * force_of_slip(times, rows[:, _FORCE_PLACE], at, 0.0)
+    return ShownBreakAway(at, offset + scale * force_of_slip(times, rows[:, _FORCE_PLACE], at, 0.0), at - ends[0].time)
 
 
 def rest_force(measurement: SensorReadings, time: float, begin: float, end: float) -> float:

@@ -138,10 +138,14 @@ class Bins(NamedTuple):
     high: Numbers
 
 
+_MOST_STICKS = 1.96   # standard deviations: 95 %
+
+
 class KnownFriction(NamedTuple):
     """Coefficients of friction: identified with bands, those of the start, and measured.
 
-    `accelerating` is the branch of a slip after the rest that is usual in the run; None without one.
+    `accelerating` is the branch of a slip after the rest that is usual in the run; None without one.  `scatter` is the
+    relative standard deviation of static friction from stick to stick.
     """
 
     kinetic: Band
@@ -152,6 +156,7 @@ class KnownFriction(NamedTuple):
     static: Band
     start_static: Scatter
     break_aways: Scatter
+    scatter: float = 0.0
 
 
 def plot_known_friction(directions: Mapping[str, KnownFriction], path: Path | str) -> None:
@@ -201,6 +206,11 @@ def _static_found(panel: Axes, friction: KnownFriction) -> None:
     _curve(panel, friction.static, 1.0, style.BLUE, 'identified, 95 % band')
     panel.plot(friction.start_static.places, friction.start_static.values, color=style.GREY, linewidth=0.9,
                linestyle=(0, (4.0, 2.0)), label='scene to start with')
+    if friction.scatter > 0.0:
+        law, share = friction.static, _MOST_STICKS * friction.scatter
+        panel.fill_between(law.places, (1.0 - share) * law.values, (1.0 + share) * law.values, alpha=0.15,
+                           linewidth=0.0, color=style.BLACK)
+        panel.text(0.98, 0.02, '95 % of the sticks: grey', transform=panel.transAxes, ha='right', fontsize=6.0)
     panel.plot(friction.break_aways.places, friction.break_aways.values, 'o', color=style.BLACK, markersize=3.0,
                markerfacecolor='white', zorder=4.0, label='measured: median and quartiles')
     panel.set(xlabel='time at rest / s')

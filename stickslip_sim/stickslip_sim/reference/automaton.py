@@ -42,7 +42,16 @@ class _Automaton:
         self.state = State(axis.stretch, axis.velocity, axis.deflection, axis.position, *self._signals())
         self.mode: Mode = Stick(self.t, axis.rest_time)
         self.swing = mpf(0)
+        self.sticks = -1
         self.flow: Flow
+        self._begin_stick()
+
+    def _begin_stick(self) -> None:
+        """Draw the static law of the next stick, where it scatters."""
+        self.sticks += 1
+        if self.axis.scatter is not None:
+            for side in self.physics.sides:
+                side.begin_stick(self.axis.scatter.factor(self.sticks))
 
     def run(self) -> Run:
         """Follow the modes and the segments of the inputs to the end."""
@@ -191,6 +200,7 @@ class _Automaton:
 
     def _hold(self, mode: Yield) -> None:
         """Stick again, with no rest time."""
+        self._begin_stick()
         self.mode = Stick(self.t, mpf(0))
         self._emit('stick', mode.direction, self.physics.friction(mode, self.state))
 
@@ -235,6 +245,7 @@ class _Automaton:
     def _arrest(self) -> None:
         """End a slip at ẋ = 0: reverse at once (F_d + F_e beyond N mu_s(0) of the other way, if it may) or stick."""
         sigma = self._slip().direction
+        self._begin_stick()
         self.state = self.state._replace(velocity=mpf(0))
         back = self.physics.side(-sigma)
         static = back.static.value(mpf(0))

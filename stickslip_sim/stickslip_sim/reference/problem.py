@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from mpmath import cos, inf, mp, mpf, pi, sin
 from ..axis import parameters as product
 from ..core import input_profile as profiles
 from ..core.input_profile import InputProfile
-from ..friction import ExcessTable, KineticTable
+from ..friction import ExcessTable, KineticTable, Scatter
 from .series import Series, series, to_decimal
 from .statics import StaticLaw
 
@@ -84,6 +84,7 @@ class Problem:
     by_drive: bool
     forward: SideOfProblem
     backward: SideOfProblem
+    scatter: Scatter | None
     drive: profiles.InputProfile
     force: profiles.InputProfile
     normal: profiles.InputProfile
@@ -119,6 +120,7 @@ def problem(axis: product.Axis, initial: product.InitialState, drive: profiles.I
         by_drive=contact is None or contact.ends_by_drive,
         forward=_side(axis.friction),
         backward=_side(axis.friction.backward or axis.friction),
+        scatter=axis.friction.static.scatter,
         drive=drive,
         force=force,
         normal=load.plus(axis.normal_force) if load else profiles.constant(axis.normal_force),
@@ -157,14 +159,17 @@ class Side:
 
     given: SideOfProblem
     breakpoints: list[mpf] = field(init=False)   # above zero
+    static: StaticLaw = field(init=False)        # of the present stick
 
     def __post_init__(self) -> None:
         self.breakpoints = self.given.breakpoints()
+        self.static = self.given.static
 
-    @property
-    def static(self) -> StaticLaw:
-        """The static law."""
-        return self.given.static
+    def begin_stick(self, factor: float) -> None:
+        """Let mu_s be that of a stick with a factor of its own, in doubles, as all that is given."""
+        law = self.given.static
+        initial = max(factor * float(law.initial), float(self.at_rest))
+        self.static = replace(law, initial=mpf(initial), limit=mpf(max(factor * float(law.limit), initial)))
 
     @property
     def at_rest(self) -> mpf:

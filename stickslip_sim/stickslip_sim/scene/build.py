@@ -24,6 +24,7 @@ from ..core.time_grid import Grid
 from ..friction import (
     ExcessTable,
     KineticTable,
+    Scatter,
     SmoothExcess,
     SmoothKinetic,
     StaticLaw,
@@ -86,6 +87,9 @@ def _one_way(values: Mapping[str, Any]) -> Friction:
     static = section_of(values, 'friction.static')
     law = StaticLawKind[static.pop('law').upper()]
     static.setdefault('limit', static['initial'])
+    deviation, of_run = static.pop('scatter', 0.0), static.pop('scatter_run', 0.0)
+    if deviation or of_run:
+        static['scatter'] = Scatter(deviation, of_run, values['seed'])
     kinetic = _kinetic(section_of(values, 'friction.kinetic'))
     return Friction(StaticLaw(law, **static), kinetic, _excess(values, kinetic))
 

@@ -44,6 +44,11 @@ _STATIC_LAW: tuple[Parameter, ...] = (
            within=ranges.KATO_EXPONENT, live=True, when=When('friction.static.law', ('kato',))),
     Parameter('friction.static.delay', 'double', None, 's', 'Rest time before mu_s starts to grow, for example while'
               ' the contact still rings (docs/paper.md). Default: 0.', *ranges.TIME, live=True, when=_GROWS),
+    Parameter('friction.static.scatter', 'double', None, '', 'Relative standard deviation of mu_s from stick to stick,'
+              ' drawn from the seed (docs/model.md). mu_s never falls below mu_k at rest. Default: 0.',
+              *ranges.SCATTER, live=True),
+    Parameter('friction.static.scatter_run', 'double', None, '', 'Relative standard deviation of mu_s from run to run:'
+              ' one factor for all sticks, drawn from the seed. Default: 0.', *ranges.SCATTER, live=True),
 )
 
 _KINETIC_LAW: tuple[Parameter, ...] = (
@@ -109,7 +114,7 @@ def forward_name(name: str) -> str:
 
 def _with_backward(section: tuple[Parameter, ...]) -> tuple[Parameter, ...]:
     """Return a section and behind it its numbers for motion along −x."""
-    shared = ('law', 'tolerance', 'delay')
+    shared = ('law', 'tolerance', 'delay', 'scatter', 'scatter_run')
     return section + tuple(
         replace(entry, name=backward_name(entry.name), default=None, required=False,
                 description=f'Along -x: {entry.description.partition(" Default:")[0]} Default: the forward value.')

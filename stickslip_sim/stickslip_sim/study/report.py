@@ -131,6 +131,8 @@ def uncertainty_report(study: Study, sample: Saltelli, swept: Swept, found: Unce
     yield f'{_size(study, sample)}, {swept.ran} run now'
     yield from failed_report(study, swept.columns)
     yield from (*_laws(study, sample), '')
+    if study.scene.axis.friction.static.scatter is not None:
+        yield f'static friction scatters: each sample has a seed of its own, from {study.scene.seed} on'
     share = 'a share that is not known' if found.stick_slip is None else f'{found.stick_slip:.2%}'
     points = f'{found.points} independent points'
     known = points if found.known == found.points else f'those {found.known} of {points} where it is known'

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..core.arrays import Numbers
 from ..core.errors import InputError
-from ..figures.point_figures import FIGURES, MOTIONS, Figures, Runs, figures_of_runs
+from ..figures.point_figures import FIGURES, MOTIONS, Figures, Runs, figures_of_runs, no_runs
 from ..report.values import versions
 from ..runs.simulated import check_run_times
 from ..scene import Scene, scene_from_values
@@ -92,7 +92,7 @@ class Study:
 
     def figures(self, first: int, last: int) -> Figures:
         """Return the figures of the points from `first` on, up to `last`."""
-        return figures_of_runs(self.runs(self.points(first, last)))
+        return figures_of_runs(self.runs(self.points(first, last), first))
 
     def rows(self, first: int, last: int) -> Numbers:
         """Return the points from `first` on, up to `last`, with their figures: a row each."""
@@ -102,11 +102,25 @@ class Study:
         """Return its description, as `description` does."""
         return description(self, command)
 
-    def runs(self, points: Numbers) -> Runs:
-        """Run the scenes of points."""
+    def runs(self, points: Numbers, first: int = 0) -> Runs:
+        """Run the scenes of points, from the one of index `first` on.
+
+        Where static friction scatters, each pair of independent points of distributions has a seed of its own; the
+        points between them share it, so that their indices are those of the numbers.
+        """
+        if self.scene.axis.friction.static.scatter is None or not isinstance(self.sample, Saltelli):
+            return self._runs(self.values, points)
+        runs = no_runs(len(points))
+        pairs = np.arange(first, first + len(points)) // self.sample.each
+        for pair in range(pairs[0], pairs[-1] + 1):
+            members = np.flatnonzero(pairs == pair)
+            runs.put(members, self._runs({**self.values, 'seed': (self.scene.seed + pair) % _SEEDS}, points[members]))
+        return runs
+
+    def _runs(self, values: Mapping[str, Any], points: Numbers) -> Runs:
         if self.works_in_batches:
-            return runs_in_batches(self.values, self.names, points, self.duration)
-        return runs_alone(self.values, self.names, points, self.duration or 0.0)
+            return runs_in_batches(values, self.names, points, self.duration)
+        return runs_alone(values, self.names, points, self.duration or 0.0)
 
 
 def check_variations(variations: Sequence[Variation | Distribution], scene_at: Callable[[Numbers], Scene]) -> None:
@@ -121,6 +135,9 @@ def check_variations(variations: Sequence[Variation | Distribution], scene_at: C
     for corner in itertools.product(*((one.low, one.high) for one in variations)):
         with named('at ' + ', '.join(f'{name}={number:g}' for name, number in zip(names, corner))):
             scene_at(np.array(corner))
+
+
+_SEEDS = 2 ** 63   # that a scene may have
 
 
 # A study as JSON values, and back: the file beside its table.

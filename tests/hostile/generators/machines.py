@@ -82,10 +82,19 @@ def _contact(rng: random.Random, mass: float, stiffness: float) -> Values:
 def _static(rng: random.Random, at_rest: float) -> Values:
     initial = at_rest * rng.choice((1.0, 1.0, rng.uniform(1.0, 1.3)))
     if rng.random() < 0.25:
-        return draw.static(initial)
+        return draw.static(initial) | _scatter(rng)
     law = rng.choice(_LAWS[:3])
-    return draw.static(initial, initial * rng.uniform(1.01, 2.5), draw.powers(rng, 1e-3, 10.0), law,
+    return _scatter(rng) | draw.static(initial, initial * rng.uniform(1.01, 2.5), draw.powers(rng, 1e-3, 10.0), law,
                        rng.choice((0.3, 0.7, 1.0, 2.0)))
+
+
+def _scatter(rng: random.Random) -> Values:
+    """Return a scatter of static friction, of every third machine."""
+    own = random.Random(f'scatter {rng.getstate()[1][:4]}')    # the other numbers stay what they were
+    if own.random() < 0.67:
+        return {}
+    return {'friction.static.scatter': draw.powers(own, 1e-3, 0.5), 'friction.static.scatter_run':
+            own.choice((0.0, 0.1)), 'seed': own.choice((0, own.randrange(2 ** 63)))}
 
 
 def _drive(rng: random.Random, feed: float, duration: float) -> Values:

@@ -28,6 +28,7 @@ from stickslip_sim.core.types import Event, EventKind, Mode
 from stickslip_sim.friction import StaticLawKind
 from stickslip_sim.proof.axes import Parts
 from stickslip_sim.proof.judges import Find
+from tests.support.scatter import factor_of, law_of_stick
 
 from ..case import Run, Undecided, borders
 from .motion import EPSILON, MARGIN, Long, Tables, axis_at, inputs_from, static
@@ -46,6 +47,7 @@ _OFF = 1e-12          # of each number of the data in the second run
 _UNFELT = 1e-9        # s of a second, of the duration: what is nearer in time is the same
 _MORE = 10.0          # times what the second run is off
 _PARTED = 1e-4        # of the duration
+_STICKS = 1000        # that have a factor of their own
 _MOMENT = 1e-9        # of the duration: a coast that short is one by rounding
 
 
@@ -73,7 +75,8 @@ class _Problem(ctypes.Structure):
         _DOUBLE, 'mass', 'stiffness', 'damping', 'feed_damping', 'contact_stiffness', 'contact_damping') + _fields(
         _INT, 'compliant', 'undeflected', 'by_drive') + _fields(
         _DOUBLE, 'velocity', 'rest_time', 'stretch', 'deflection', 'duration', 'steps') + _fields(
-        _Side * 2, 'sides') + _fields(_Profile, 'drive', 'force', 'normal')
+        _Side * 2, 'sides') + _fields(_Profile, 'drive', 'force', 'normal') + _fields(_INT, 'sticks') + _fields(
+        _DOUBLES, 'factors')
 
 
 class _Row(ctypes.Structure):
@@ -81,7 +84,7 @@ class _Row(ctypes.Structure):
 
 
 class _Segment(ctypes.Structure):
-    _fields_ = _fields(_INT, 'mode', 'direction') + _fields(
+    _fields_ = _fields(_INT, 'mode', 'direction', 'stick') + _fields(
         _DOUBLE, 'second', 'fraction', 'length', 'stretch', 'velocity', 'deflection', 'excess', 'rest_time'
         ) + _fields(_DOUBLE * 4, 'noise') + _fields(_DOUBLE, 'rounding', 'margin')
 
@@ -205,8 +208,9 @@ def _segment(parts: Parts, begin: Node, length: float) -> _Segment:
     contact = parts.axis.contact.stiffness if isinstance(parts.axis.contact, CompliantContact) else math.inf
     noise = (FORCES * forces / stiffness if stiffness > 0.0 else 0.0, 2.0 * EPSILON * abs(begin.velocity),
              FORCES * forces / contact, float(begin.excess_noise))
-    return _Segment(begin.mode, begin.direction, begin.at.second, begin.at.fraction, length, _stretch(parts, begin),
-                    begin.velocity, begin.deflection, float(begin.excess), begin.rest_time,
+    stick = begin.stick if parts.axis.friction.static.scatter else 0
+    return _Segment(begin.mode, begin.direction, stick, begin.at.second, begin.at.fraction, length,
+                    _stretch(parts, begin), begin.velocity, begin.deflection, float(begin.excess), begin.rest_time,
                     (ctypes.c_double * 4)(*noise), FORCES, MARGIN)
 
 
@@ -266,7 +270,8 @@ def _wrong_limit(parts: Parts, begin: Node, end: Node, length: float) -> Iterato
     event = end.event
     assert event is not None
     side = _sign(parts, event)
-    value, growth = static(parts.axis.friction.along(side).static, [Long(begin.rest_time) + Long(length)])
+    law = law_of_stick(parts.axis.friction.along(side), begin.stick)
+    value, growth = static(law, [Long(begin.rest_time) + Long(length)])
     if abs(event.static_coefficient - value[0]) > 1e-12 * value[0] + MARGIN * 1e-15 * growth[0]:
         yield f'mu_s at {end.label} is {event.static_coefficient!r} and not {float(value[0])!r}'
     normal = axis_at(parts, end.at).normal_force
@@ -295,7 +300,14 @@ def _problem(parts: Parts) -> _Problem:
         axis.mass, axis.drive_stiffness, axis.drive_damping, axis.feed_share * axis.drive_damping,
         contact.stiffness if contact else 0.0, contact.damping if contact else 0.0, contact is not None,
         contact is not None and contact.undeflected, contact is None or contact.ends_by_drive, initial.velocity,
-        initial.rest_time, initial.stretch, initial.deflection, parts.duration, _STEPS, sides, *inputs)
+        initial.rest_time, initial.stretch, initial.deflection, parts.duration, _STEPS, sides, *inputs,
+        *_factors(parts))
+
+
+def _factors(parts: Parts) -> tuple[int, 'ctypes.Array[ctypes.c_double]']:
+    scatter = parts.axis.friction.static.scatter
+    factors = [1.0] if scatter is None else [factor_of(scatter, stick) for stick in range(_STICKS)]
+    return len(factors), _numbers(factors)
 
 
 def _side(friction: Friction) -> _Side:

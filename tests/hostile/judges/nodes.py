@@ -38,6 +38,7 @@ class Node:
     excess: Any
     excess_noise: Any
     new_force: bool     # an input may have jumped at this instant
+    stick: int          # index of the stick of which mu_s is, where it scatters
     unbalanced: Any     # N, by which rounding of a speed on steep friction has set the spring apart from m a
 
     @property
@@ -52,17 +53,18 @@ def nodes(run: Run, tables: Tables) -> Iterator[Node]:
     jumps = {Instant(0.0, 0.0)}
     for border in borders(parts):     # the end, too: an input may jump there
         jumps.add(instant(border))
-    excess, mode, unbalanced = (Long(0), Long(0)), Mode.STICK, Long(0)
+    excess, mode, unbalanced, stick = (Long(0), Long(0)), Mode.STICK, Long(0), 0
     stretches = [(run.at_start, run.start), *run.stretches]
     for events, sample in stretches:
         for event in events:
             # a contact that yielded leaves no excess
             excess = (Long(0), Long(0)) if mode == Mode.YIELDING else _excess(event, excess, tables)
             mode = event.mode
+            stick += event.kind == EventKind.REVERSE or mode == Mode.STICK
             axis = axis_at(parts, event.instant)
             unbalanced = _unbalanced(event, unbalanced, excess[0], tables, axis)
-            yield _node_of_event(event, *excess, event.instant in jumps, axis, unbalanced)
-        yield _node_of_sample(sample, *excess, unbalanced)
+            yield _node_of_event(event, *excess, event.instant in jumps, axis, stick, unbalanced)
+        yield _node_of_sample(sample, *excess, stick, unbalanced)
 
 
 def _excess(event: Event, excess: tuple[Any, Any], tables: Tables) -> tuple[Any, Any]:
@@ -95,7 +97,8 @@ def _unbalanced(event: Event, before: Any, excess: Any, tables: Tables, axis: Ax
     return max(before, 2 * EPSILON * Long(axis.normal_force) * steepest * Long(speed))
 
 
-def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, axis: Axis, unbalanced: Any) -> Node:
+def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, axis: Axis, stick: int, unbalanced: Any
+                   ) -> Node:
     contact, kinetic = axis.contact, axis.friction.along(event.direction).kinetic
     deflection = 0.0
     if isinstance(contact, CompliantContact) and (event.kind == EventKind.YIELD or event.velocity):
@@ -103,13 +106,13 @@ def _node_of_event(event: Event, excess: Any, excess_noise: Any, jumped: bool, a
     elif isinstance(contact, CompliantContact) and event.mode == Mode.STICK and not contact.undeflected:
         deflection = event.direction * axis.normal_force * kinetic.coefficients[0] / contact.stiffness
     return Node(event.instant, event, event.mode, event.direction, event.position, event.velocity, event.drive_force,
-                deflection, 0.0, excess, excess_noise, jumped, unbalanced)
+                deflection, 0.0, excess, excess_noise, jumped, stick, unbalanced)
 
 
-def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any, unbalanced: Any) -> Node:
+def _node_of_sample(sample: Sample, excess: Any, excess_noise: Any, stick: int, unbalanced: Any) -> Node:
     return Node(sample.instant, None, sample.mode, sample.direction, sample.position, sample.velocity,
                 sample.drive_force, sample.contact_deflection, sample.rest_time, excess,
-                excess_noise, True, unbalanced)
+                excess_noise, True, stick, unbalanced)
 
 
 _GUARDS = {Mode.STICK: ('the static limit', 'the static limit backwards'),

@@ -16,6 +16,7 @@ import numpy as np
 from stickslip_sim.axis import Axis, CompliantContact
 from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.proof.axes import Parts
+from tests.support.scatter import law_of_stick
 
 from ..case import Run
 from .motion import EPSILON, PI, Inputs, Long, Tables, axis_at, force_before, inputs_from, rounding_of, static
@@ -209,5 +210,6 @@ def _balanced(rates: Any, start: Any, noise: Any, pace: Any, mass: Any) -> tuple
 
 def limit_along(segment: Segment, times: Any, side: float) -> tuple[Any, Any]:
     """Return N mu_s against a force of this sign, and its rate, at times after the start of a stick."""
-    values, rates = static(segment.axis.friction.along(side).static, Long(segment.begin.rest_time) + times)
+    values, rates = static(law_of_stick(segment.axis.friction.along(side), segment.begin.stick),
+                           Long(segment.begin.rest_time) + times)
     return Long(segment.axis.normal_force) * values, Long(segment.axis.normal_force) * rates

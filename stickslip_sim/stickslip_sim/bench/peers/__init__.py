@@ -18,8 +18,11 @@ from . import sundials
 def _within_its_equations(peer: Peer) -> Peer:
     """Return a peer that gives up on any friction but the one that `automaton` is written for."""
     def prepare(problem: Problem, setting: Setting) -> Callable[[], Outcome]:
-        if problem.axis.friction.backward is not None or problem.parameters[STATIC_LAW] != StaticLawKind.EXPONENTIAL:
-            raise SolverError('written here for a friction that is the same both ways, and an exponential mu_s')
+        friction = problem.axis.friction
+        if (friction.backward is not None or friction.static.scatter is not None
+                or problem.parameters[STATIC_LAW] != StaticLawKind.EXPONENTIAL):
+            raise SolverError('written here for a friction that is the same both ways, and an exponential mu_s '
+                              'without scatter')
         return peer.prepare(problem, setting)
 
     return peer._replace(prepare=prepare)

@@ -23,7 +23,7 @@ from ...axis.codes import (
     STICK,
     YIELDING,
 )
-from ...axis.forces import drive_force, static_at_once
+from ...axis.forces import drive_force, static_at_once, take_stick
 from ...axis.layout import Parameters
 from ...axis.records import PLAIN
 from ...axis.rows import Events, SampleRow, Sinusoids
@@ -322,6 +322,7 @@ class Engine:
 
     def _apply(self, p: Parameters, s: State, events: Events, row: int) -> int:
         """Choose the mode anew after a jump; return the rows in use."""
+        take_stick(p, s)
         if s.mode in (STICK, YIELDING):
             s.acceleration = self._motion(p, s).rates(0.0, (0.0, s.velocity))[1]   # that a break-away begins with
             if not apply_inputs(p, s, events, row):
@@ -345,6 +346,7 @@ class Engine:
         return self.laws[1 if s.direction < 0.0 else 0]
 
     def _motion(self, p: Parameters, s: State) -> ModeMotion:
+        take_stick(p, s)
         return ModeMotion(p, s, self._law(s), self.normal_force, Tolerance(self.method, self.rtol, self.atol))
 
     def _move(self, p: Parameters, s: State, second: float, fraction: float, reached: Reached) -> None:

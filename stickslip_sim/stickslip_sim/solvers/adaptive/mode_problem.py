@@ -268,7 +268,7 @@ class ModeMotion:
         v, f = self.inputs.at(t)
         paths = abs(self._spring) + abs(self.inputs.travel(t)) + abs(y)
         sizes = self._stiffness * paths + self._damping * (abs(v) + abs(u)) + abs(f)
-        sizes += self.load.at(t) * (abs(self._line[0]) + abs(self._line[1] * u) + self._p.static_limit)
+        sizes += self.load.at(t) * (abs(self._line[0]) + abs(self._line[1] * u) + self._p.stick_limit)
         return ROUNDING * (sizes + self._contact[0] * (abs(self._deflection) + abs(y)) + self._contact[1] * abs(u))
 
     def _speed_error(self, _: float, state: Sequence[float]) -> float:

@@ -13,7 +13,15 @@ functions change `s` in place and return the number of rows in use; `advance` al
 import math
 
 from ...axis.codes import ARREST, BREAKAWAY, COAST, COASTING, KNOT, STICK, YIELDING
-from ...axis.forces import applied_force, drive_force, force_rounding, friction_force, friction_line, segment_above
+from ...axis.forces import (
+    applied_force,
+    drive_force,
+    force_rounding,
+    friction_force,
+    friction_line,
+    segment_above,
+    take_stick,
+)
 from ...axis.layout import Parameters
 from ...axis.mode_entry import choose_slip
 from ...axis.motion import begin_motion, drive_travel, move_start, spring_after, travel
@@ -70,6 +78,7 @@ def advance(p: Parameters, s: State, second: float, fraction: float, events: Eve
     """Bring the state to a time, which is not before its segment start; return the rows in use and how it ended."""
     same_instant = 0
     take_load(p, s)
+    take_stick(p, s)
     while True:
         t = (second - s.second) + (fraction - s.fraction)
         reach = t + STAMP
@@ -142,6 +151,7 @@ def set_parameters(p: Parameters, new: Parameters, s: State, second: float, frac
     _start_at(p, s, second, fraction)
     s.inputs.base_n = new.normal_force
     begin_load(new, s)
+    take_stick(new, s)
     stored = stored_energy(p, s, 0.0)
     if s.mode == STICK and new.compliant != 0.0:
         force = friction_force(p, s, s.deflection, s.velocity, applied_force(p, s))
@@ -222,6 +232,7 @@ def energy(p: Parameters, s: State, second: float, fraction: float, out: EnergyR
 def _load_inputs(p: Parameters, s: State, sinusoids: Sinusoids) -> None:
     load_sinusoids(s, sinusoids)
     begin_load(p, s)
+    take_stick(p, s)
 
 
 @inlined

@@ -22,6 +22,7 @@ from ...axis.forces import (
     segment_end,
     static_at_once,
     static_limit,
+    take_stick,
 )
 from ...axis.layout import Parameters
 from ...axis.motion import drive_travel, spring_after, travel
@@ -55,6 +56,7 @@ def is_sound(p: Parameters, s: State, second: float, fraction: float) -> bool:
     """Whether the state at a time between the segment start and the next event is within its mode, and in balance."""
     t = (second - s.second) + (fraction - s.fraction)
     take_load(p, s)
+    take_stick(p, s)
     y, u, a = travel(p, s, t)
     p.normal_force, _ = normal_force_at(p, s, t)
     v, force = s.inputs.v + s.inputs.v_rate * t, s.inputs.f + s.inputs.f_rate * t
@@ -120,7 +122,7 @@ def _balances(p: Parameters, s: State, t: float, spring: float, v: float, u: flo
     What rounding leaves of the forces at the velocity `begin`, where the motion began, is lost along its whole path.
     """
     left, scale = balance(p, s, t)
-    top = p.normal_force * max(p.static_limit, p.backward_limit)
+    top = p.normal_force * max(p.stick_limit, p.stick_backward_limit)
     if p.stiffness > 0.0:
         scale = max(scale, 0.5 * top * top / p.stiffness)
     fastest = max(abs(u), abs(begin))

@@ -18,6 +18,7 @@ from ...axis.forces import (
     static_at_once,
     static_limit,
     stick_force,
+    take_stick,
 )
 from ...axis.layout import Parameters
 from ...axis.mode_entry import limit_rounding
@@ -101,6 +102,7 @@ def set_parameters(p: Parameters, new: Parameters, s: State, second: float, frac
     _catch_up(p, s, second, fraction)
     change_contact(new, s, held_force(p, s))
     s.segment = float(first_segment(new, s.direction))
+    take_stick(new, s)
     if s.mode == YIELDING:
         return row + 1 if apply_inputs(new, s, events, row) else row
     return _look(new, s, events, row)
@@ -162,6 +164,7 @@ def _catch_up(p: Parameters, s: State, second: float, fraction: float) -> None:
 @compiled
 def _look(p: Parameters, s: State, events: Events, row: int) -> int:
     """Make the transition that is due at the state, if any; return the rows in use."""
+    take_stick(p, s)
     if s.mode == STICK:
         return _look_at_stick(p, s, events, row)
     if s.mode == YIELDING:
