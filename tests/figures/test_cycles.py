@@ -141,6 +141,16 @@ def test_directions_are_reported() -> None:
     assert all(cycle.slip_travel > 0.0 and cycle.peak_speed > 0.0 for cycle in cycles)
 
 
+def test_the_mean_of_both_directions_has_the_drive_forces_along_each_slip() -> None:
+    """They would cancel: a run there and back had a mean of a tenth of each."""
+    there = summary(run_events(paper_axis(RIGID), 0.002, 8.0), 8.0)
+    profile = table('drive', (0.0, 5.0, 5.01), (0.002, 0.002, -0.002))
+    both = summary(run_events(paper_axis(RIGID), profile, 10.0), 10.0)
+    assert there.mean is not None and both.mean is not None
+    assert (there.mean.direction, both.mean.direction) == (1, 0)
+    assert both.mean.break_away_drive_force == pytest.approx(there.mean.break_away_drive_force, rel=0.2)
+
+
 def test_reversal_at_once_ends_one_slip_and_begins_another() -> None:
     events = [_event(1.0, EventKind.BREAKAWAY, Mode.ACCELERATING, 1, 0.0, 0.0),
               _event(1.5, EventKind.DECELERATE, Mode.DECELERATING, 1, 0.5, 2.0),

@@ -268,10 +268,16 @@ def _touches(cycle: Cycle, following: Event, before: Sequence[Cycle]) -> bool:
 
 
 def mean_cycle(cycles: Sequence[Cycle]) -> Cycle:
-    """Return the means of the figures of cycles; the first begin, and direction 0 where they differ in that."""
+    """Return the means of the figures of cycles; the first begin.
+
+    Where directions differ, direction is 0 and the drive forces are those along each slip, which would cancel.
+    """
     count = len(cycles)
-    _, _, *means = (math.fsum(column) / count for column in zip(*cycles, strict=True))
     directions = {cycle.direction for cycle in cycles}
+    if len(directions) > 1:
+        cycles = [cycle._replace(break_away_drive_force=cycle.direction * cycle.break_away_drive_force,
+                                 arrest_drive_force=cycle.direction * cycle.arrest_drive_force) for cycle in cycles]
+    _, _, *means = (math.fsum(column) / count for column in zip(*cycles, strict=True))
     return Cycle(cycles[0].begin, directions.pop() if len(directions) == 1 else 0, *means)
 
 
