@@ -31,7 +31,7 @@ MOVES = [Moves(travel, feed) for travel, feed in
 SLOW_FEED = Moves()
 DELAYS = (2, 3)
 RESOLUTIONS = (1e-7, 1e-6)   # m
-GAINS = (2.0, 4.0, 8.0, 16.0, 25.0)
+GAINS = (4.0, 8.0, 16.0)
 WRONG = (('normal force 20 % less', 0.8, 1.0), ('normal force 20 % more', 1.2, 1.0),
          ('drive stiffness 20 % less', 1.0, 0.8), ('drive stiffness 20 % more', 1.0, 1.2))
 _MICRO, _MILLI = 1e6, 1e3

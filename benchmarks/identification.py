@@ -40,9 +40,6 @@ COMMANDS: Mapping[str, tuple[str, ...]] = {   # by the name of the part of the p
         ' --out runs/identify/axis',
         'identify runs/identify/axis --scene examples/identify/start.yaml --free examples/identify/free.yaml'
         ' --out runs/identify/axis_found'),
-    'check': (
-        'compare runs/identify/axis runs/identify/axis_found/identified.yaml'
-        ' --out runs/identify/axis_beside',),
     'posterior': (
         'uncertainty runs/identify/axis_found/identified.yaml --with runs/identify/axis_found/posterior.yaml'
         ' --of drive.velocity --set drive.course=constant --set drive.velocity=0.002 --samples 64'
@@ -54,7 +51,7 @@ COMMANDS: Mapping[str, tuple[str, ...]] = {   # by the name of the part of the p
         ' --free examples/identify/lugre_free.yaml --out runs/identify/lugre_found'),
 }
 LEFT_OUT = {               # lines of the output that the page shows as "..."
-    'synthetic': '  note: ', 'check': 'axis: ', 'posterior': '  (?:axis|friction)[.]|share of',
+    'synthetic': '  note: ', 'posterior': '  (?:axis|friction)[.]|share of',
     'lugre': 'lugre: 4001|  last cycle|  note: (?:modes|the velocity)|contact|friction[.](?:kinetic|static[.]time)'
              '|not separated|[0-9]+ of [0-9]+ starts|stickslip: ',
 }

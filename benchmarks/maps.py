@@ -6,7 +6,6 @@
 `pictures`, `critical` and `uncertainty`.
 """
 
-import math
 import pathlib
 import shlex
 import shutil
@@ -65,8 +64,7 @@ UNCERTAIN = ('uncertainty paper_fig7 --with examples/friction.yaml --set drive.v
              ' --out runs/maps/uncertainty --plot runs/uncertainty.png')
 UNTIL = 'amplitude\n  '   # what the page leaves out of its output: the shares of other figures than stick-slip
 SETTING = Setting(1e-8, 'tolerance')
-CORES = 16 * 16                    # of a cluster of sixteen machines
-MILLION, CHUNKS = 1_000_000, 500   # points, and the pieces that are handed out
+MILLION = 1_000_000   # points
 _ROUNDS, _BY_SCIPY = 3, 12   # sweeps that are timed; points that scipy runs
 
 
@@ -153,15 +151,14 @@ def _run_of_scipy(scene: Scene, duration: float) -> Callable[[], Outcome]:
 
 
 def throughput_table(costs: list[Cost], of_the_uncertain: float) -> str:
-    """Return what a point costs (s), here and by scipy, and what a million take on one core and on a cluster."""
+    """Return what a point costs (s), here and by scipy, and what a million take."""
     heads = ('study', 'stickslip, a point', 'scipy, a point', 'ratio', 'scipy misses break-aways',
-             'a million points, one core', f'{CORES} cores')
+             'a million points')
     rows = [(f'{c.name}: feed and stiffness', c.ours, f'{1e3 * c.scipy:.0f} ms', f'{c.scipy / c.ours:,.0f}',
              f'{c.flawed} of {c.by_scipy}') for c in costs]
     rows.append(('paper_fig7: examples/friction.yaml', of_the_uncertain, '', '', ''))
     return '\n'.join(markdown_table(heads, [
-        (name, f'{1e6 * cost:.0f} µs', *by_scipy, _duration(MILLION * cost),
-         _duration(math.ceil(CHUNKS / CORES) * MILLION / CHUNKS * cost)) for name, cost, *by_scipy in rows])) + '\n'
+        (name, f'{1e6 * cost:.0f} µs', *by_scipy, _duration(MILLION * cost)) for name, cost, *by_scipy in rows])) + '\n'
 
 
 def of_the_uncertain() -> float:

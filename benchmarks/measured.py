@@ -23,7 +23,6 @@ RIVALS = {
 }
 CASES = 'A', 'B', 'C', 'D', 'paper_fig8'    # those that the page shows
 EXTREMES = 'X1', 'X2', 'X7'
-LEAST = 2e-6    # s of a part of a step
 CPU_MARK, LATENCY_MARK = 0.75, 1.5    # of a bare node that records; steps
 Row = Mapping[str, Any]
 Columns = Mapping[str, Callable[[Row], str]]
@@ -120,17 +119,11 @@ def loop() -> str:
                  [row for row in kept('loop')['rows'] if row['commands'] is not None])
 
 
-def budget() -> str:
-    """Return the parts of a step."""
-    return table({'part': text('part'), 'what': text('what'), 'p50, µs': number('p50', 1e6), 'p99': number('p99', 1e6),
-                  'max': number('max', 1e6)}, [row for row in kept('budget')['rows'] if row['p50'] >= LEAST])
-
-
 def hil() -> str:
     """Return the node beside a bare node, and the ratios that have marks."""
     rows = kept('hil')['beside']
     bare, recording, node = rows
-    shown = table({'node': text('node'), 'CPU per step, µs': number('cpu', 1e6), 'unheard': number('unheard'),
+    shown = table({'node': text('node'), 'CPU per step, µs': number('cpu', 1e6),
                    'overruns, %': number('overruns', 1e2, '.2f'), **LATENESS,
                    'latency p50, µs': number('latency_p50', 1e6), 'latency p99': number('latency_p99', 1e6)}, rows)
     cpu, latency = node['cpu'], node['latency_p50']
@@ -174,15 +167,15 @@ def identification() -> str:
         return f'{row["measured"]:.5g} {row["unit"]}'.rstrip()
 
     return table({'figure': text('figure'), 'measured': measured, 'mark': lambda row: row['mark'] or '–'},
-                 [row for row in kept('identification')['synthetic'] if row['mark'] or 'median' in row['figure']])
+                 [row for row in kept('identification')['synthetic']
+                  if row['mark'] or row['figure'].startswith('error')])
 
 
 def varied() -> str:
     """Return what is found on axes of every kind."""
     rows = [row for row in kept('identification')['varied'] if row['axes'].startswith('feed')]
     return table({'axes': text('axes'), 'rejected': lambda row: f'{row["rejected"]} of {row["number"]}',
-                  'called found, %': number('found', 1e2), 'of these covered, %': number('covered', 1e2),
-                  'far off': number('far_off')}, rows)
+                  'called found, %': number('found', 1e2), 'of these covered, %': number('covered', 1e2)}, rows)
 
 
 def rivals() -> str:
@@ -190,13 +183,6 @@ def rivals() -> str:
     return table({'method': text('method'), 'within 1 %': number('close', 1e2, '.0f'),
                   'median error, %': number('error_median', 1e2, '.2g'), 'CPU, s': number('cpu', form='.1f'),
                   'simulations': number('simulations', form=',.0f')}, kept('identification')['rivals'])
-
-
-def foreign() -> str:
-    """Return how near the slips of a LuGre axis are met."""
-    return table({'figure': text('figure'), 'median difference, %': number('median', 1e2, '.1f'),
-                  'largest': number('largest', 1e2, '.1f')},
-                 [row for row in kept('identification')['foreign_slips'] if row['mark']])
 
 
 def extremes() -> str:
@@ -231,4 +217,4 @@ def soak() -> str:
 
 
 PARTS: Mapping[str, Callable[[], str]] = {one.__name__: one for one in (
-    races, marks, loop, budget, hil, rates, busy, identification, varied, rivals, foreign, extremes, smooth_laws, soak)}
+    races, marks, loop, hil, rates, busy, identification, varied, rivals, extremes, smooth_laws, soak)}

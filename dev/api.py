@@ -33,6 +33,9 @@ _OF_THE_NODE, _OF_THE_PLAYER = 'ros/node/*.py', 'ros/replay/node.py'
 _SERVICE = re.compile(r"create_service\((?:srv\.)?(\w+), '(~/\w+)'")
 _TYPES = {'Trigger': 'std_srvs', 'SetBool': 'std_srvs', 'Step': 'stickslip_msgs', 'InjectFault': 'stickslip_msgs'}
 _FIELD = re.compile(r'^([\w/]+(?:\[\])?) +(\w+)$', re.MULTILINE)
+_UNNAMED = {'float64': '', 'std_msgs/Header': ''}    # types that go without saying
+_SHARED = {'--node', '--timeout'}    # options of every verb of `call`
+_WITH_SET = {'--set', '--allow-implausible'}    # the second goes with the first
 _OF_OTHER_ROOMS = {   # attributes that no user needs: between rooms of the package, and not promised
     'Scene': {'inputs', 'make_rig', 'make_simulator', 'normal_force', 'rig', 'sources'},
     'Simulator': {'checkpoint', 'event_counts', 'require_sound', 'restore', 'root_iterations', 'skip', 'step',
@@ -84,7 +87,8 @@ def messages() -> str:
     rows = []
     for path in sorted((*_MESSAGES.glob('msg/*.msg'), *_MESSAGES.glob('srv/*.srv'))):
         parts = path.read_text(encoding='utf-8').split('---\n')
-        fields = ' → '.join(', '.join(f'`{name}` {kind}' for kind, name in _FIELD.findall(part)) for part in parts)
+        fields = ' → '.join(', '.join(f'`{name}` {_UNNAMED.get(kind, kind)}'.rstrip()
+                                      for kind, name in _FIELD.findall(part)) for part in parts)
         constants = ', '.join(f'{name} {number}' for name, number in _CONSTANT.findall(''.join(parts)))
         rows.append((f'`{path.parent.name}/{path.stem}`', fields, constants))
     return _table(('interface', 'fields (→ of the answer)', 'constants'), rows)
@@ -115,7 +119,9 @@ def _with_their_own(command: click.Command) -> Iterator[tuple[str, click.Command
 def _verb(name: str, command: click.Command) -> tuple[str, str, str]:
     arguments = ' '.join(one.human_readable_name.replace('|', ' or ') for one in command.params
                          if isinstance(one, click.Argument))   # a bar would end the cell
-    options = ', '.join(f'`{one.opts[0]}`' for one in command.params if isinstance(one, click.Option))
+    names = [one.opts[0] for one in command.params if isinstance(one, click.Option)]
+    hidden = _SHARED if name.startswith('call ') else {'--allow-implausible'} if {*names} >= _WITH_SET else set()
+    options = ', '.join(f'`{one}`' for one in names if one not in hidden)
     return f'`{name}`', f'`{arguments}`' if arguments else '', options
 
 

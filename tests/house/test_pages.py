@@ -80,7 +80,7 @@ class TestMade:
         ('services', '`simulation_interfaces/srv/StepSimulation`'),
         ('services', '| `replay_node` | `~/stop` | `std_srvs/srv/Trigger` |'),
         ('messages', 'KIND_TIME_LOST 9'),
-        ('messages', '`velocity` float64, `force` float64 → `success` bool'),
+        ('messages', '`velocity`, `force` → `success` bool'),
     ])
     def test_each_list_has_what_users_meet(self, name: str, row: str) -> None:
         """Once for each way to find the names: a pattern that matches nothing would empty the list."""

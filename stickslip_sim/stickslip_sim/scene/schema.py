@@ -53,8 +53,7 @@ _STATIC_LAW: tuple[Parameter, ...] = (
 
 _KINETIC_LAW: tuple[Parameter, ...] = (
     choice('friction.kinetic.law', 'table', 'Kinetic coefficient mu_k as a function of speed: a table, linear between'
-           ' breakpoints; or mu_c + (mu_0 - mu_c) g(speed/v_s) + k_v speed with g(z) = exp(-z^exponent) (stribeck),'
-           ' exp(-z) (exponential) or 1/(1 + z) (hyperbolic).', _KINETIC),
+           ' breakpoints, or a smooth law (docs/model.md).', _KINETIC),
     numbers('friction.kinetic.velocities', (0.0,), 'm/s', 'Breakpoints of mu_k, rising from 0; the last is v_gr.',
             within=ranges.SPEED, live=True, when=_BREAKPOINTS),
     numbers('friction.kinetic.coefficients', (0.0,), '', 'mu_k at these speeds.',
@@ -84,8 +83,7 @@ _COMMON: tuple[Parameter, ...] = (
 )
 
 _EXCESS_LAW: tuple[Parameter, ...] = (
-    choice('friction.excess.law', 'table', 'Shape psi(speed) of the excess of the accelerating branch: a table; or'
-           ' (1 + cos(pi z))/2 (cosine) or (1 - z)^exponent (power) with z = speed/limit_velocity, 0 beyond.',
+    choice('friction.excess.law', 'table', 'Shape psi(speed) of the excess of the accelerating branch (docs/model.md).',
            _EXCESS, _BRANCHES),
     numbers('friction.excess.velocities', None, 'm/s', 'Breakpoints of psi. Default: linear to 0 at the last'
             ' breakpoint of mu_k (of a smooth law: where its falling part has dropped to 1 %).', within=ranges.SPEED,
@@ -138,10 +136,11 @@ _OF_FILES = {'m/s': ('velocity, or position', 'm/s, or m', 'mm/s'), 'N': ('force
 
 def drive_profile() -> tuple[Parameter, ...]:
     """Return the parameters of the drive: an input profile of its velocity, or of its position."""
-    place = ', position (drive position at breakpoints, differentiated)'
+    shapes = (': constant, ramp (to a constant), steps (jumps), sine, table (linear between breakpoints), position'
+              ' (drive position at breakpoints, differentiated)')
     return (
         *profile('drive', 'velocity', 'acceleration', 'velocities', 'm/s', 'velocity of the drive',
-                 ranges.VELOCITY, ranges.ACCELERATION, _POSITION.values, place),
+                 ranges.VELOCITY, ranges.ACCELERATION, _POSITION.values, shapes),
         numbers('drive.positions', None, 'm', 'Drive position s at these times, linear between them. The first is'
                 ' initial.position + initial.stretch; the last one holds.',
                 within=ranges.PLACE, when=_POSITION),
@@ -152,10 +151,10 @@ def drive_profile() -> tuple[Parameter, ...]:
 
 
 def profile(section: str, value: str, rate: str, values: str, unit: str, what: str, size: Range, change: Range,
-            more: tuple[object, ...] = (), of_more: str = '', optional: bool = False) -> tuple[Parameter, ...]:
+            more: tuple[object, ...] = (), shapes: str = '', optional: bool = False) -> tuple[Parameter, ...]:
     """Return the parameters of an input profile of `what`, with values and rates in these ranges.
 
-    `more` choices have breakpoints of their own; `of_more` describes them.  An `optional` profile is there where
+    `more` choices have breakpoints of their own; `shapes` describes all choices.  An `optional` profile is there where
     `SECTION.course` is given.
     """
     ramp = When(f'{section}.course', ('ramp',))
@@ -165,8 +164,7 @@ def profile(section: str, value: str, rate: str, values: str, unit: str, what: s
     on_top = When(f'{section}.course', _SHAPES) if optional else None
     return (
         choice(f'{section}.course', None if optional else 'constant',
-               f'Profile of the {what}{"" if optional else ", in the node until a command arrives"}: constant, ramp'
-               f' (to a constant), steps (jumps), sine, table (linear between breakpoints){of_more}.',
+               f'Profile of the {what}{"" if optional else ", in the node until a command arrives"}{shapes}.',
                (*_SHAPES, *map(str, more))),
         number(f'{section}.{value}', 0.0, unit, f'{_begin(what)}; initial value of a ramp, mean of a sine.',
                within=size, when=When(f'{section}.course', ('constant', 'ramp', 'sine'))),
@@ -239,19 +237,18 @@ JOINT_PREFIX = Parameter('joint_interface.prefix', 'string', None, '', 'Prefix o
                          ' several axes in one robot description (docs/hil.md). Default: no prefix.', starts_names=True)
 
 PARAMETERS: tuple[Parameter, ...] = (
-    Parameter('scene', 'string', 'unnamed', '', 'Name of the scene. The name of a shipped scene loads that scene,'
-              ' and the file changes it.'),
+    Parameter('scene', 'string', 'unnamed', '', 'Name of the scene. That of a shipped scene loads it, and the file'
+              ' changes it.'),
 
     number('axis.mass', 350.0, 'kg', 'Mass m of the slider.', within=ranges.MASS, live=True),
     number('axis.drive_stiffness', 6.0e5, 'N/m', 'Stiffness c of the drive spring.', within=ranges.STIFFNESS,
            live=True),
     number('axis.drive_damping', 4000.0, 'N s/m', 'Damping h of the drive damper.', within=ranges.DAMPING, live=True),
-    Parameter('axis.damper', 'string', None, '', 'Far end of this damper (docs/paper.md): drive, with'
-              ' F_d = c (s − x) + h (v − ẋ); or slideway, with F_d = c (s − x) and a separate force −h ẋ.'
-              ' Default: drive.',
+    Parameter('axis.damper', 'string', None, '', 'Far end of this damper: the drive; or the slideway, and a'
+              ' separate force −h ẋ brakes the slider (docs/paper.md). Default: drive.',
               choices=('drive', 'slideway')),
-    number('axis.normal_force', 3432.3275, 'N', 'Normal force N; friction is the coefficient times N. The default is'
-           ' the weight of 350 kg and does not follow axis.mass.', within=ranges.NORMAL_FORCE, live=True),
+    number('axis.normal_force', 3432.3275, 'N', 'Normal force N. The default, the weight of 350 kg, does not follow'
+           ' axis.mass.', within=ranges.NORMAL_FORCE, live=True),
 
     choice('contact.model', 'rigid', 'Contact in stick: rigid (the slider stands still) or compliant (a spring and a'
            ' damper).', ('rigid', 'compliant')),
@@ -331,8 +328,8 @@ PARAMETERS: tuple[Parameter, ...] = (
               ' measured joints axis_slider and axis_drive (docs/hil.md).'),
     JOINT_PREFIX,
 
-    texts('faults.ids', 'Ids of faults from the start, as for ~/inject_fault (docs/hil.md).'),
-    texts('faults.kinds', f'Kinds of these faults (docs/hil.md#faults): {", ".join(RULES)}.'),
+    texts('faults.ids', 'Ids of faults from the start (docs/hil.md#faults).'),
+    texts('faults.kinds', f'Kinds of these faults: {", ".join(RULES)}.'),
     numbers('faults.starts', None, 's', 'Start times of these faults.', within=Range(0.0, MAX_TIME), required=False),
     numbers('faults.durations', None, 's', 'Durations of these faults.',
             within=Range(ranges.TIME_CONSTANT.low, MAX_TIME),
@@ -350,10 +347,10 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter('record.enabled', 'bool', False, '', 'Record a bag from the start.'),
     Parameter('record.folder', 'string', '', '', 'New folder of the bag; empty: the node chooses. A live change must'
               ' stay where the first one was (empty: runs/), or below.', live=True),
-    Parameter('record.max_size', 'integer', None, 'bytes', 'Split the bag at this size, like ros2 bag record'
-              ' --max-bag-size. Default: one file.', 2**20, 2**62),
-    Parameter('record.max_duration', 'double', None, 's', 'Split the bag at this length, like ros2 bag record'
-              ' --max-bag-duration. Default: one file.', 1.0, MAX_TIME),
+    Parameter('record.max_size', 'integer', None, 'bytes', 'Split the bag at this size. Default: one file.',
+              2**20, 2**62),
+    Parameter('record.max_duration', 'double', None, 's', 'Split the bag at this length. Default: one file.',
+              1.0, MAX_TIME),
     Parameter('record.log_time', 'string', None, '', 'Log times of the bag: simulation, starting at 0, or wall, the'
               ' stamps, like ros2 bag record. Default: simulation.', choices=_LOG_TIMES),
     Parameter('record.each_reset', 'bool', None, '', 'Start a new bag at each ~/reset and close the previous one; if'
