@@ -17,7 +17,7 @@ import click
 import pytest
 
 from stickslip_sim.cli import files
-from stickslip_sim.cli.files import progress_bar
+from stickslip_sim.cli.files import milestones, progress_bar
 from stickslip_sim.cli.main import run
 from stickslip_sim.inputs import load_scene
 from tests.support.repository import ROOT
@@ -307,3 +307,10 @@ def test_short_work_shows_nothing(terminal: Terminal) -> None:
 def test_nobody_looks_where_there_is_no_terminal() -> None:
     with progress_bar('unseen') as take:
         assert take is None
+
+
+def test_a_log_gets_a_line_now_and_then(capsys: Capture) -> None:
+    milestones('working')('fit', 0.5)
+    assert capsys.readouterr().err == ''
+    milestones('working', every=0.0)('fit', 0.5)
+    assert capsys.readouterr().err == 'working: fit, 50% after 0 s\n'

@@ -250,6 +250,18 @@ def progress_bar(label: str, patience: float = 1.0, every: float = 0.5) -> Itera
         bar.end()
 
 
+def milestones(label: str, every: float = 10.0) -> Callable[[str, float], None]:
+    """Return a function that takes a stage and the share that is done, and logs it, once in `every` seconds at most."""
+    begin = said = time.monotonic()
+
+    def take(stage: str, share: float) -> None:
+        nonlocal said
+        if time.monotonic() - said >= every:
+            said = time.monotonic()
+            click.echo(f'{label}: {stage}, {share:.0%} after {said - begin:.0f} s', err=True)
+    return take
+
+
 class _Bar:
     is_up = False
 

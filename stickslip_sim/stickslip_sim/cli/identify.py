@@ -11,7 +11,7 @@ import click
 
 from . import completion
 from .arguments import SceneChanges, recorded_run, scene_changes
-from .files import check_new_folder, new_folder, progress_bar
+from .files import check_new_folder, milestones, new_folder, progress_bar
 
 if TYPE_CHECKING:
     from ..identification.many_fits import WorkFolder
@@ -55,7 +55,7 @@ def identify(runs: tuple[str, ...], scene: str, free: str, out: str, laws: bool,
     work = WorkFolder(out, facts_of(measured, start, sought), resume)
     with _going_on(work), progress_bar('identifying') as progress:
         found = find(measured, start, free, workers=count, laws=laws, keeper=work, test=given, each=each,
-                     progress=progress and (lambda stage, share: progress(share)))
+                     progress=milestones('identifying') if progress is None else lambda _, share: progress(share))
     with new_folder('--out', work.results) as folder:
         write_results(measured[0], found, scene, folder, names)
     work.finish()

@@ -289,6 +289,7 @@ def identify(run: Given | Sequence[Given], start: SceneOrName, free: str | Path 
             found = best_fit(fits, say)
         problem.model.take_tolerance(found[0].tolerance)
         ends.append(best_of_slips(problem, along_the_run(problem, found)))
+    say('intervals', 0.9)   # about so much of the work is done
     if len(runs) > 1:
         identified = _of_several([*named_apart(runs)], problems, ends, each, began)
     else:
