@@ -6,8 +6,11 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from stickslip_sim.identification.curve.measured_curve import FrictionCurve, Units
+from stickslip_sim.identification.curve.report import BEST, EACH, fitted_curve, fitted_curves
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
 from tests.support.repository import ROOT
@@ -82,6 +85,20 @@ def test_each_direction_gets_its_own_curve(tmp_path: Path, capsys: Capture) -> N
     smooth = (*given[:-1], 'stribeck', '--backward', '--scene', ahead, '--out', tmp_path / 'other.yaml')
     assert '--law = ' in answered(capsys, *smooth)[2]
     assert '--scene' in answered(capsys, *given, '--backward', '--out', tmp_path / 'other.yaml')[2]
+
+
+def test_the_law_of_both_directions_is_the_best_of_both_together() -> None:
+    speeds = np.geomspace(1e-4, 0.1, 12)
+    noise = 1e-3 * np.random.default_rng(3).standard_normal(12)
+    falling = 0.1 + 0.1 * np.exp(-(speeds / 5e-3)**2)
+    both = FrictionCurve(np.tile(speeds, 2), np.concatenate([0.1 + 0.3 * speeds + noise, falling]),
+                         np.repeat([True, False], 12))
+    units = Units('m/s')
+    found = fitted_curves('both', both, units, EACH, BEST)
+    alone = [fitted_curve('both', both.chosen(one), units, BEST).chosen.name for one in ('forward', 'backward')]
+    assert alone == ['table', 'gaussian']
+    assert [one.chosen.name for one in found] == ['gaussian', 'gaussian']
+    assert [one.kinetic['law'] for one in found] == ['stribeck', 'stribeck']
 
 
 @pytest.mark.parametrize(('arguments', 'said'), [

@@ -116,17 +116,20 @@ class FittedCurve(NamedTuple):
 
 def fitted_curves(path: str, measured: FrictionCurve, units: Units, direction: str, law: str,
                   notes: tuple[str, ...] = (), base: Scene | None = None) -> list[FittedCurve]:
-    """Return the fits to the points of a direction, or to EACH; by the BEST law all of them have the first one's.
+    """Return the fits to the points of a direction, or to EACH; the BEST law of all is the same one for each.
 
     A `base` has the law to begin with.  Raises InputError.
     """
-    found: list[FittedCurve] = []
     if base is not None and law == BEST:
         law = next((one for one in LAWS if one == base.values['friction.kinetic.law']), law)
-    for one in ('forward', 'backward') if direction == EACH else (direction,):
-        found.append(fitted_curve(path, measured.chosen(one), units, law, notes))
-        law = found[0].chosen.name if law == BEST else law
-    return found
+    curves = [measured.chosen(one) for one in (('forward', 'backward') if direction == EACH else (direction,))]
+    found = [fitted_curve(path, curve, units, law, notes) for curve in curves]
+    if law != BEST or len(found) == 1:
+        return found
+    names = [fit.name for fit in found[0].fits.by_rank if fit.name not in found[1].fits.left_out]
+    pairs = [[one.fits.of(name) for one in found] for name in names]   # ranked as those of one curve
+    best = min(pairs, key=lambda fits: (any(fit.miss > MISSED for fit in fits), sum(fit.criterion for fit in fits)))
+    return [one._replace(chosen=fit, kinetic=fit.scene) for one, fit in zip(found, best, strict=True)]
 
 
 def scene_of_curves(found: Sequence[FittedCurve], base: Scene | None, changes: Mapping[str, object], backward: bool
