@@ -234,3 +234,18 @@ def test_a_solver_without_a_walk_of_its_own_takes_every_piece() -> None:
     once, often = make('plain', solver), make('plain', solver)
     assert advance(once, 1) == advance(often, 4001)
     assert once.sample() == often.sample()
+
+
+@pytest.mark.parametrize('kind', ['held', 'periods'])
+def test_a_simulator_begun_anew_does_what_a_new_one_does(kind: str) -> None:
+    others, inputs = profiles('others'), profiles(kind)
+    at = instants(Fraction(3, 500), 0, 500)
+    initial = InitialState(1e-3, -0.02, 0.0)
+    rows = np.empty((3, 500, len(Sample._fields)))
+    used = Simulator(AXIS, InitialState(), *others)
+    used.take_samples(at, rows[0])
+    used.restart(initial, *inputs)
+    used.take_samples(at, rows[1])
+    Simulator(AXIS, initial, *inputs).take_samples(at, rows[2])
+    assert np.array_equal(rows[1], rows[2])
+    assert not np.array_equal(rows[0], rows[2])

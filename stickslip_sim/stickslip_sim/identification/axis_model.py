@@ -125,6 +125,16 @@ _MEAN_LAW = {'friction.static.scatter': 0.0, 'friction.static.scatter_run': 0.0}
 _BELOW = 1.0 - 1e-12   # of what the contact holds: rounding must not break it
 
 
+class _Latest:
+    """The latest of what is costly to make, with its key; a copy begins without it."""
+
+    key: object = None
+    made: Any = None
+
+    def __reduce__(self) -> tuple[type['_Latest'], tuple[()]]:
+        return _Latest, ()
+
+
 class AxisModel:
     """What an axis does with trial `values` of its free parameters; the inputs are those that were measured, if any.
 
@@ -132,7 +142,8 @@ class AxisModel:
     """
 
     def __init__(self, scene: Scene, parameters: Sequence[FreeParameter], measurement: SensorReadings) -> None:
-        self.scene, self._parameters = scene, tuple(parameters)
+        self.scene = scene
+        self._sensors = {one.sensor: k for k, one in enumerate(parameters)}
         self._own = [k for k, one in enumerate(parameters) if one.sensor is None]
         self._names = [parameters[k].name for k in self._own]
         self._take_inputs(measurement)
@@ -179,6 +190,7 @@ class AxisModel:
 
     def _take_inputs(self, measurement: SensorReadings) -> None:
         self._measurement, self._of_inputs = measurement, dict[object, Any]()
+        self._dynamics, self._running = _Latest(), _Latest()
         force = measurement.force or constant(0.0)
         self._force = np.array([force.starts, force.values, force.rates])
 
@@ -189,6 +201,13 @@ class AxisModel:
 
     def dynamics(self, values: Numbers) -> Dynamics | None:
         """Return the axis and its inputs with trial values; None where these contradict each other."""
+        key = values.tobytes(), self._held, self._tolerance
+        if key != self._dynamics.key:
+            self._dynamics.key, self._dynamics.made = key, self._made(values)
+        found: Dynamics | None = self._dynamics.made
+        return found
+
+    def _made(self, values: Numbers) -> Dynamics | None:
         try:
             found = dynamics_of(self._with_table(self._values(values)) | _MEAN_LAW)
         except StickslipError:
@@ -204,8 +223,11 @@ class AxisModel:
 
     def delay(self, values: Numbers, channel: str = 'external_force') -> float:
         """Return how long after its readings the measured force acts, or how late a channel is read, s."""
-        return float(sum(value for one, value in zip(self._parameters, values.tolist(), strict=True)
-                         if one.sensor == (channel, DELAY)))
+        return self._of_sensor(values, channel, DELAY, 0.0)
+
+    def _of_sensor(self, values: Numbers, channel: str, what: str, otherwise: float) -> float:
+        place = self._sensors.get((channel, what))
+        return otherwise if place is None else float(values[place])
 
     def _force_of(self, values: Numbers) -> InputProfile:
         """Return the force that acted, from what its sensor measured."""
@@ -243,11 +265,7 @@ class AxisModel:
 
     def gain(self, values: Numbers, channel: str) -> tuple[float, float]:
         """Return offset and scale of the sensor of a channel."""
-        gain = {'offset': 0.0, 'scale': 1.0}
-        for one, value in zip(self._parameters, values.tolist(), strict=True):
-            if one.sensor is not None and one.sensor[0] == channel and one.sensor[1] in gain:
-                gain[one.sensor[1]] = value
-        return gain['offset'], gain['scale']
+        return self._of_sensor(values, channel, 'offset', 0.0), self._of_sensor(values, channel, 'scale', 1.0)
 
     def state_after(self, motion: MeasuredMotion | None, dynamics: Dynamics, values: Numbers) -> InitialState:
         """Return the state at the end of a measured motion: at rest, the spring as far stretched as it must be.
@@ -279,8 +297,9 @@ class AxisModel:
         rows = np.empty((len(at.seconds), len(Sample._fields)))
         duration = float(at.seconds[-1] + at.fractions[-1])
         try:
-            self._simulator(dynamics, begin, initial, duration).take_samples(at, rows, with_events=False)
+            self._simulator(dynamics, begin, initial, duration, True).take_samples(at, rows, with_events=False)
         except StickslipError:
+            self._running = _Latest()
             return None
         if delay > 0.0:
             rows[:, OUTPUT_PLACES['position']] += np.minimum(early, 0.0) * rows[:, OUTPUT_PLACES['velocity']]
@@ -296,11 +315,21 @@ class AxisModel:
         except StickslipError:
             return None
 
-    def _simulator(self, dynamics: Dynamics, begin: float, initial: InitialState, duration: float) -> Simulator:
+    def _simulator(self, dynamics: Dynamics, begin: float, initial: InitialState, duration: float,
+                   is_kept: bool = False) -> Simulator:
+        """Return a simulator from a state on; one that is kept is begun anew while the dynamics are the same."""
         self.runs += 1
+        inputs = (self._from(dynamics.drive, 'drive', begin, duration),
+                  self._from(dynamics.force, 'force', begin, duration))
+        if is_kept and self._running.key is dynamics and dynamics.load is None:
+            found: Simulator = self._running.made
+            found.restart(initial, *inputs)
+            return found
         load = shifted(dynamics.load, begin, duration) if dynamics.load else None
-        return Simulator(dynamics.axis, initial, self._from(dynamics.drive, 'drive', begin, duration),
-                         self._from(dynamics.force, 'force', begin, duration), load=load)
+        found = Simulator(dynamics.axis, initial, *inputs, load=load)
+        if is_kept:
+            self._running.key, self._running.made = dynamics, found
+        return found
 
     def _from(self, profile: InputProfile, which: str, begin: float, duration: float) -> InputProfile:
         """Return a profile from a time on; kept, where no free parameter changes it."""

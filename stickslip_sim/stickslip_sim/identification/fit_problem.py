@@ -469,8 +469,10 @@ class FitProblem:
 
     def _columns(self, stretch: MeasuredStretch, dynamics: Dynamics, values: Numbers) -> list[Numbers] | None:
         """Return what the sensors would have measured of a stretch, (n,) for each channel; None without a motion."""
-        late, begin, initial = 0.0, stretch.begin, self.model.state_after(stretch.before, dynamics, values)
-        if (start := stretch.break_away) is not None:
+        late, begin = 0.0, stretch.begin
+        if (start := stretch.break_away) is None:
+            initial = self.model.state_after(stretch.before, dynamics, values)
+        else:
             offset, scale = self.model.gain(values, 'position')
             late = start.time - float(self.measurement.times[start.first])
             initial = InitialState((start.place - offset) / scale, start.direction * _CREEPS, 0.0)

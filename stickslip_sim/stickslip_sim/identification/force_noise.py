@@ -90,15 +90,14 @@ class NoiseFilter(NamedTuple):
 
     def white(self, residuals: Numbers) -> Numbers:
         """Return what is new in each of the residuals (n,), in their unit."""
-        from scipy.signal import lfilter, lfiltic  # takes a while, and most runs need no filter
+        from scipy.signal import lfilter  # takes a while, and most runs need no filter
 
         numerator = (1.0, -1.0) if self.order == 1 else (1.0, -2.0, 1.0)
-        found = np.empty(len(residuals))
+        found, steady = np.empty(len(residuals)), np.array((-1.0, 1.0)[:self.order])
         for first, last in zip(self.begins, (*self.begins[1:], len(residuals)), strict=True):
             part = residuals[first:last]
-            before = 0.0 if first in self.known else part[0]
-            state = lfiltic(numerator, self.denominator, np.zeros(self.order), np.full(self.order, before))
-            found[first:last], _ = lfilter(numerator, self.denominator, part, zi=state)
+            before = 0.0 if first in self.known else part[0]   # that it was all along, and nothing came out
+            found[first:last], _ = lfilter(numerator, self.denominator, part, zi=before * steady)
         found *= self.counts
         for one in self.break_aways:
             if one.shares.any():

@@ -107,15 +107,16 @@ def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Regio
     return slopes if np.array_equal(ways, np.eye(len(point))) else np.linalg.solve(ways, slopes.T).T
 
 
-def steps_over_jumps(residuals: Residuals, point: Numbers, region: Region, step: _Step) -> Numbers:
+def steps_over_jumps(residuals: Residuals, found: 'Solution', region: Region, step: _Step) -> Numbers:
     """Return steps (k,) of derivatives that no jump decides: longer ones, where that lowers a derivative by far.
 
     A fit likes to end at the edge of a jump.  Over a short step there the derivative is that of the jump, as large as
     the step is short: the fit stands still, and takes the parameter for known.
     """
+    point, sizes = found.point, np.sqrt(np.diag(found.information))
     here = residuals(point)
-    sizes: Numbers = np.full(len(point), np.inf)
-    steps = longer = np.asarray(np.broadcast_to(step, point.shape), dtype=np.float64)
+    steps: Numbers = np.asarray(np.broadcast_to(step, point.shape), dtype=np.float64)
+    longer = _LONGER * steps
     while True:
         again = np.linalg.norm(slopes_of(residuals, point, here, region, longer), axis=0)
         falls = (again < _JUMPS * sizes) & (longer <= _LONGEST)

@@ -110,7 +110,7 @@ def shifted(profile: InputProfile, begin: float, duration: float) -> InputProfil
         return _unrolled(profile, begin, duration, sinusoids)
     value, rate, _ = profile.pieces_at(begin)
     first, last = bisect_right(profile.starts, begin), bisect_right(profile.starts, begin + duration)
-    return InputProfile((0.0, *(start - begin for start in profile.starts[first:last])),
+    return InputProfile((0.0, *np.subtract(profile.starts[first:last], begin).tolist()),
                         (value, *profile.values[first:last]), (rate, *profile.rates[first:last]), sinusoids=sinusoids)
 
 

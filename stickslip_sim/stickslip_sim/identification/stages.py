@@ -271,7 +271,7 @@ def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
                      far=max(_NEAR, *_lost_from(problem)) * len(measured.times) * len(measured.channels))
     found = search(start, step=steps)
     while problem.model.is_pushed:
-        before, steps = steps, steps_over_jumps(residuals, found.point, problem.region, steps)
+        before, steps = steps, steps_over_jumps(residuals, found, problem.region, steps)
         if np.array_equal(steps, before):
             break
         found = search(found.point, step=steps)

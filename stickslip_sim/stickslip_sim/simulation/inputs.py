@@ -18,12 +18,16 @@ class Inputs:
     """
 
     def __init__(self, drive: InputProfile, force: InputProfile) -> None:
+        self._drive_pieces, self._force_pieces = _KeptPieces(), _KeptPieces()
+        self.most_sinusoids = len(drive.sinusoids) + len(force.sinusoids)    # that the inputs can have
+        self.take(drive, force)
+        self.reset()
+
+    def take(self, drive: InputProfile, force: InputProfile) -> None:
+        """Let `reset` take these profiles, of no more sinusoids; raises InputError when one has no meaning."""
         drive.check('drive')
         force.check('force')
         self._first = drive, force
-        self._drive_pieces, self._force_pieces = _KeptPieces(), _KeptPieces()
-        self.most_sinusoids = len(drive.sinusoids) + len(force.sinusoids)    # that the inputs can have
-        self.reset()
 
     def reset(self) -> tuple[Piece, Piece]:
         """Take the original input profiles again; return their first pieces."""

@@ -46,6 +46,13 @@ class Simulator:
         self._counts = dict.fromkeys(EventKind, 0)
         return self._waiting
 
+    def restart(self, initial: InitialState, drive: InputProfile, force: InputProfile) -> None:
+        """Begin anew as `reset`, with another initial state, and other input profiles of no more sinusoids."""
+        check_start(self.axis, initial)
+        self._inputs.take(drive, force)
+        self._initial = initial
+        self.reset()
+
     @property
     def time(self) -> Instant:
         """The time that the state was advanced to."""
