@@ -137,7 +137,7 @@ StageProgress = Callable[[str, float], None]
 
 _SAMPLES = 4000         # about so many are enough until the last stage
 _FIRST_SLIPS = 1, 3, 8, 20, 50   # that are fitted as one, before the whole run
-_MOST_STEPS = 60
+_FIRST_STEPS, _MOST_STEPS = 10, 60   # before it is looked whether a jump holds the fit, and at all
 _NEARER = 10.0          # of the sum of squares: so much nearer a finer table must be,
 _MOVES = 0.3            # or so far, in standard deviations, move a number
 _ROUNDS, _GAIN = 4, 0.1 # of further fits at most, and what each must gain
@@ -267,14 +267,16 @@ def _ahead(problem: FitProblem, start: Numbers) -> Numbers | None:
 
 def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
     residuals, steps, measured = problem.of_run(), problem.steps, problem.measurement
-    search = partial(minimise, residuals, region=problem.region, most=_MOST_STEPS, tolerance=1e-3,
+    search = partial(minimise, residuals, region=problem.region, tolerance=1e-3,
                      far=max(_NEAR, *_lost_from(problem)) * len(measured.times) * len(measured.channels))
-    found = search(start, step=steps)
+    most = _FIRST_STEPS if problem.model.is_pushed else _MOST_STEPS
+    found = search(start, step=steps, most=most)
     while problem.model.is_pushed:
         before, steps = steps, steps_over_jumps(residuals, found, problem.region, steps)
-        if np.array_equal(steps, before):
+        if np.array_equal(steps, before) and (found.is_settled or most == _MOST_STEPS):
             break
-        found = search(found.point, step=steps)
+        most = _MOST_STEPS
+        found = search(found.point, step=steps, most=most)
     return found
 
 
