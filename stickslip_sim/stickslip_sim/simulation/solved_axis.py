@@ -293,8 +293,6 @@ class SolvedAxis:
 
     def _check_samples(self, rows: NDArray[np.float64]) -> None:
         """Raise SolverError unless the states in rows of samples are finite."""
-        if math.isfinite(rows[:, _MOVES].sum()):   # one that is not finite makes it so
-            return
         lost = ~np.isfinite(rows[:, _MOVES]).all(axis=1)
         if lost.any():
             second, fraction = rows[lost.argmax(), :2].tolist()
