@@ -26,8 +26,8 @@ from ..runs.samples import gathered, joined
 class Reference(NamedTuple):
     """A commanded position, linear between (times[i], positions[i]) and held before the first and after the last."""
 
-    times: tuple[float, ...]       # s, rising
-    positions: tuple[float, ...]   # m
+    times: Sequence[float] | Numbers       # s, rising
+    positions: Sequence[float] | Numbers   # m
 
     def at(self, times: Numbers) -> Numbers:
         """Return the commanded positions."""
@@ -129,7 +129,10 @@ def observed_motion(run: Run) -> ObservedMotion:
 
 def states_of(run: Run) -> Iterator[Columns]:
     """Yield what is looked at of the states of a run block by block."""
-    return run.state_blocks(_STATE_FIELDS) if isinstance(run, RecordedRun) else run.sample_blocks()
+    if isinstance(run, RecordedRun):
+        return run.state_blocks(_STATE_FIELDS)
+    return ({name: column for name, column in block.items() if name in _STATE_FIELDS}
+            for block in run.sample_blocks())
 
 
 def timing_of(run: Run) -> Timing | None:
@@ -149,7 +152,7 @@ def timing_of(run: Run) -> Timing | None:
 def setpoint_of(run: Run) -> Reference | None:
     """Return the setpoint of a run as a reference; None without one."""
     wanted = run.setpoint
-    return Reference(tuple(wanted['time'].tolist()), tuple(wanted['position'].tolist())) if wanted else None
+    return Reference(wanted['time'], wanted['position']) if wanted else None
 
 
 @kept

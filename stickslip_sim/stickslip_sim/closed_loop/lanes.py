@@ -173,13 +173,12 @@ class _Lanes:
                                self._none, self._alive, self._counts, told, self._history, step):
                 for i in np.flatnonzero(self._counts).tolist() if self._history is not None else ():
                     self._events[i] += events_in(self._tables[i], int(self._counts[i]))
-            truth = told.copy()    # a controller may keep what it is told
-            self._positions[step] = truth[0]
-            measured = self._encoders.read(truth)
+            self._positions[step] = told[0]
+            measured = self._encoders.read(told)
             is_commanded = step % study.every == 0 and step < last
-            if is_commanded:
+            if is_commanded:    # with a copy: a controller may keep what it is told
                 self._order(self._ask(self._controller, time, tuple_of(Measurement, (
-                    *measured, truth[4], never, setpoint))))
+                    *measured, told[4].copy(), never, setpoint))))
 
     def _order(self, answer: Any) -> None:
         given = answer if isinstance(answer, Command) else Command(answer)
@@ -238,10 +237,10 @@ class _Encoders:
         settings, rig = [scene.rig.encoder for scene in scenes], scenes[0].rig
         self._are_ideal = np.array([one.is_ideal for one in settings])
         self._are_mixed = bool(self._are_ideal.any())
-        self._resolution, self._offset, self._noise = (np.array([getattr(one, name) for one in settings])
+        self._resolution, self._offset, self._noise = (np.array([getattr(one, name) for one in settings]) + 0.0
                                                        for name in ('resolution', 'offset', 'noise'))
-        self._are_counted = self._resolution > 0.0
-        self._step = np.where(self._are_counted, self._resolution, 1.0)
+        self._are_exact = self._resolution == 0.0
+        self._step = np.where(self._are_exact, 1.0, self._resolution)
         self._delays = np.array([scene.rig.encoder_delay_steps for scene in scenes])
         self._most_steps, self._lanes = int(self._delays.max()), np.arange(len(scenes))
         self._steps, self._per_second = (rig.encoder.velocity_steps, scenes[0].time.rate / rig.encoder.velocity_steps)
@@ -251,9 +250,11 @@ class _Encoders:
         self._readings: list[Numbers] = []
 
     def read(self, truth: Numbers) -> list[Numbers]:
-        """Return both positions and velocities, in the order of a Measurement; `truth` has what is so."""
-        if self._are_mixed and self._are_ideal.all():
-            return list(truth[:4])
+        """Return both positions and velocities, in the order of a Measurement; `truth`, what is so, changes later."""
+        if self._are_mixed:
+            truth = truth.copy()
+            if self._are_ideal.all():
+                return list(truth[:4])
         reading = self._counted(self._delayed(truth[0:4:2]))
         self._readings.append(reading)    # before the first all were as that
         del self._readings[:-self._steps - 1]
@@ -264,15 +265,20 @@ class _Encoders:
     def _delayed(self, positions: Numbers) -> Numbers:
         if not self._most_steps:
             return positions
-        self._positions.append(positions)
+        self._positions.append(positions.copy())
         del self._positions[:-self._most_steps - 1]
         at = np.maximum(len(self._positions) - 1 - self._delays, 0)
         found: Numbers = np.array(self._positions)[at, :, self._lanes]
         return found.T
 
     def _counted(self, positions: Numbers) -> Numbers:
-        shifted = positions + self._offset + 0.0    # no -0.0, as alone
+        reading: Numbers = positions + self._offset    # which is not -0.0: nor is the sum, as alone
         if self._streams:
             noise = np.array([[one.standard_normal()] for one in self._streams])
-            shifted = positions + self._offset + np.where(self._noise > 0.0, self._noise * noise, 0.0)
-        return np.where(self._are_counted, self._step * np.floor(shifted / self._step + 0.5), shifted)
+            reading += np.where(self._noise > 0.0, self._noise * noise, 0.0)
+        counts: Numbers = reading / self._step
+        counts += 0.5
+        np.floor(counts, out=counts)
+        counts *= self._step
+        np.copyto(counts, reading, where=self._are_exact)
+        return counts

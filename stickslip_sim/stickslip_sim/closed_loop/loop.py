@@ -3,9 +3,10 @@
 """The loop itself: step, measure, ask, command, as a node in lock-step does it; its run and its setpoint."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import repeat
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -45,7 +46,7 @@ class LoopRecord:
     def __init__(self, start: Mode) -> None:
         self.start = start
         self.rows: list[bytes] = []                                        # the numbers of samples
-        self.measured: list[Measured | None] = []
+        self.measured: list[tuple[float, ...] | None] = []   # plain tuples: the garbage collector drops them
         self.commands: list[tuple[int, float | None, float | None]] = []   # step from which on, m/s, N
         self.events: list[tuple[int, Event]] = []                          # step into which it fell
         self.rig_events: list[tuple[int, RigEvent]] = []
@@ -63,7 +64,7 @@ class ClosedLoopRun(SimulatedRun):
     `told` is what was measured at each step; a setpoint, if there is one, is known at each step.
     """
 
-    told: Sequence[Measured | None] = ()
+    told: Sequence[tuple[float, ...] | None] = ()
     orders: Orders = NO_ORDERS
     controller: str = ''
     is_commanded: ClassVar[bool] = True
@@ -208,9 +209,9 @@ def _table(path: Path) -> CsvTable:
     return CsvTable('setpoint', path, [column_of(path, *names, 'setpoint') for names in _NAMES], MOST_POINTS)
 
 
-def as_setpoints(columns: Numbers | None, count: int) -> list[Setpoint | None]:
+def as_setpoints(columns: Numbers | None, count: int) -> Iterator[Setpoint | None]:
     """Return them one by one, None where there is none."""
-    return [None] * count if columns is None else [tuple_of(Setpoint, row) for row in columns.tolist()]
+    return repeat(None, count) if columns is None else map(tuple_of, repeat(Setpoint), zip(*columns.T.tolist()))
 
 
 _REPORTED_EVERY = 1000   # steps
@@ -318,7 +319,7 @@ class _Loop:
         last = len(times) - 1
         velocity = force = None
         held = Measured(0.0, 0.0, 0.0, 0.0)
-        ends = [tuple_of(Instant, end) for end in zip(self._times.seconds.tolist(), self._times.fractions.tolist())]
+        ends = map(tuple_of, repeat(Instant), zip(self._times.seconds.tolist(), self._times.fractions.tolist()))
         for step, (time, end, setpoint) in enumerate(zip(times, ends, setpoints)):
             if watchdog is not None and (silence := watchdog.silence(rig.counts.heard, now[max(step - 1, 0)])):
                 rig.time_out(silence)
@@ -326,8 +327,11 @@ class _Loop:
             take_row(row.tobytes())
             if events or rig_events:
                 record.note(step, events, rig_events)
-            measure(measured)
-            held = measured or held
+            if measured is None:
+                measure(None)
+            else:
+                held = measured
+                measure(tuple(measured))
             velocity = force = None
             if step % every == 0 and step < last:
                 try:

@@ -7,6 +7,7 @@ import json
 import math
 import re
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 from ..core.errors import InputError
@@ -34,8 +35,13 @@ def complete_values(values: Mapping[str, object]) -> dict[str, Any]:
 
 def section_of(values: Mapping[str, Any], section: str) -> dict[str, Any]:
     """Return the values of a section (`friction.static`) by their names in it, those of sections inside it too."""
+    return {short: values[name] for name, short in _names_in(section) if name in values}
+
+
+@cache
+def _names_in(section: str) -> tuple[tuple[str, str], ...]:
     prefix = f'{section}.'
-    return {name[len(prefix):]: value for name, value in values.items() if name.startswith(prefix)}
+    return tuple((name, name[len(prefix):]) for name in BY_NAME if name.startswith(prefix))
 
 
 def stated(values: Mapping[str, object]) -> dict[str, object]:

@@ -112,7 +112,7 @@ class Simulator:
         """Bring the state to a time from the present one on, unchecked; return events and the record of a sample."""
         events, self._waiting = self._waiting, []
         row = self._solved.step(to, events)
-        return self._counted(events), row
+        return self._counted(events) if events else events, row
 
     def _counted(self, events: list[Event]) -> list[Event]:
         for event in events:

@@ -75,8 +75,8 @@ class OwnControllerNode(ListedNode):
         self._joints = JointNames.of(scene.joint_prefix)
         times = None if self._duration is None else steps_of(scene, self._duration)
         self._last = None if times is None else len(times.seconds) - 1
-        self._setpoints: Sequence[Setpoint | None] = () if self._file is None or times is None else as_setpoints(
-            setpoints_at(self._file, times.seconds + times.fractions), len(times.seconds))
+        self._setpoints: Sequence[Setpoint | None] = () if self._file is None or times is None else list(as_setpoints(
+            setpoints_at(self._file, times.seconds + times.fractions), len(times.seconds)))
         return True
 
     def begin(self) -> None:

@@ -110,7 +110,10 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
 
 @inlined
 def _keeps_off(p: Parameters, s: State, osc: Oscillator, t: float) -> bool:
-    """Whether the force surely stays below N mu_s(0) up to t: by its rate and a bound on its curvature."""
+    """Whether the force surely stays below N mu_s up to t: by its rate and a bound on its curvature.
+
+    N mu_s is that of rest time 0, or that of now by more than rounding: no law takes it back.
+    """
     stiffness, damping = p.contact_stiffness, p.contact_damping
     u, a, jerk = s.velocity, s.acceleration, s.jerk - 2.0 * osc.gamma * s.acceleration
     snap = s.snap - 2.0 * osc.gamma * jerk - osc.omega2 * a
@@ -120,8 +123,12 @@ def _keeps_off(p: Parameters, s: State, osc: Oscillator, t: float) -> bool:
     second_rate += abs(sag_second)
     force, way = stiffness * s.deflection + damping * u, (rate + 0.5 * second_rate * t) * t
     side = 1.0 if force > 0.0 else -1.0
-    return (abs(force) + way < p.normal_force * static_at_once(p, side)
-            and way - abs(force) < p.normal_force * static_at_once(p, -side))
+    if not way - abs(force) < p.normal_force * static_at_once(p, -side):
+        return False
+    if abs(force) + way < p.normal_force * static_at_once(p, side):
+        return True
+    limit = static_limit(p, s.rest, side)
+    return abs(force) + way < p.normal_force * limit - force_rounding(p, s, limit)
 
 
 @compiled
