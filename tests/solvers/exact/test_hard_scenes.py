@@ -13,7 +13,9 @@ import pytest
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.input_profile import constant, ramp
+from stickslip_sim.core.types import EventKind
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
+from stickslip_sim.inputs import load_scene
 from stickslip_sim.simulation.simulator import Simulator
 from tests.support.axes import instant
 from tests.support.stored_objects import exact_run, inputs_of
@@ -92,6 +94,21 @@ def test_a_ring_that_never_dies_is_leapt_over(scene: dict[str, Any]) -> None:
     events = simulator.advance(instant(2.0))
     assert len(events) >= 8
     assert simulator.root_iterations <= 100 * len(events)
+
+
+def test_a_contact_that_rest_strengthens_is_not_searched_at_each_command() -> None:
+    # above N mu_s(0) for half of its rest, under a new command a millisecond: N mu_s of now holds it off
+    scene = load_scene('positioning', {'drive.course': 'constant', 'drive.velocity': 0.0, 'initial.rest_time': 0.5})
+    rig = scene.make_rig()
+    side = scene.axis.friction.static
+    at_once, above = scene.axis.normal_force * side.initial, 0
+    result = rig.make_step()
+    while not result.events:
+        above += abs(result.sample.friction_force) > at_once
+        result = rig.make_step(velocity=0.004 + 1e-5 * (rig.step % 3))
+    assert above > 100
+    assert result.events[0].kind == EventKind.BREAKAWAY
+    assert rig.simulator.root_iterations < 20
 
 
 def test_breakpoints_that_are_close_together_lose_no_digits() -> None:
