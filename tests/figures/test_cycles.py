@@ -146,7 +146,8 @@ def test_the_mean_of_both_directions_has_the_drive_forces_along_each_slip() -> N
     there = summary(run_events(paper_axis(RIGID), 0.002, 8.0), 8.0)
     profile = table('drive', (0.0, 5.0, 5.01), (0.002, 0.002, -0.002))
     both = summary(run_events(paper_axis(RIGID), profile, 10.0), 10.0)
-    assert there.mean is not None and both.mean is not None
+    assert there.mean is not None
+    assert both.mean is not None
     assert (there.mean.direction, both.mean.direction) == (1, 0)
     assert both.mean.break_away_drive_force == pytest.approx(there.mean.break_away_drive_force, rel=0.2)
 

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from stickslip_sim.identification.results import write_results
 
 from stickslip_sim import Measurement, identify
 from stickslip_sim.axis import CompliantContact
@@ -28,6 +27,7 @@ from stickslip_sim.identification.fit_problem import FitProblem
 from stickslip_sim.identification.free_parameters import free_parameters
 from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE
 from stickslip_sim.identification.identify import _problem
+from stickslip_sim.identification.report import write_results
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import run_of
 from stickslip_sim.runs import SimulatedRun, simulate
