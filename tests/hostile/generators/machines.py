@@ -90,7 +90,7 @@ def _static(rng: random.Random, at_rest: float) -> Values:
 
 def _scatter(rng: random.Random) -> Values:
     """Return a scatter of static friction, of every third machine."""
-    own = random.Random(f'scatter {rng.getstate()[1][:4]}')    # the other numbers stay what they were
+    own = random.Random(f'scatter {rng.getstate()}')    # the other numbers stay what they were
     if own.random() < 0.67:
         return {}
     return {'friction.static.scatter': draw.powers(own, 1e-3, 0.5), 'friction.static.scatter_run':

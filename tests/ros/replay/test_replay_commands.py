@@ -151,7 +151,7 @@ class TestUnderWay:
     def test_refused_by_the_axis(self, axis: Client, recorded: Path, tmp_path: Path) -> None:
         for folder, words, reported in (
                 (recorded, ['start_offset:=0.1'], 'start_offset = 0.1 is refused: must be 0 in lock-step'),
-                (commanded(tmp_path / 'mid', first=400), [], 'step 1 is missing; only a run that was recorded'),
+                (commanded(tmp_path / 'mid', first=400), [], 'step 1 is missing; only a complete run of the node'),
                 (commanded(tmp_path / 'fast', velocity=5.0), [], '/feed_axis gave up: velocity = 5.0 is refused')):
             assert reported in refusal(folder, *words)
 
