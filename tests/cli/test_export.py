@@ -139,8 +139,7 @@ def test_the_examples_of_the_documentation(tmp_path: Path, monkeypatch: pytest.M
             exec(block, names)
         else:
             assert capsys.readouterr().out == block
-    assert len(blocks) == 10
-    assert names['mass'] == 350.0
+    assert len(blocks) == 9
     assert names['jump'] == pytest.approx(1.3181e-3, rel=1e-4)
 
 

@@ -231,5 +231,5 @@ def test_the_tool_takes_a_seed(capsys: Capture) -> None:
                                                              ('--set', 'seed=1'))]
     assert texts[0] == texts[1] != texts[2] == texts[3]
     assert 'seed' in refused(capsys, *given, '--seed', '-1')
-    assert 'must be left out of a page' in refused(capsys, 'explore', 'paper_fig7', '--set',
+    assert 'must be omitted in a page' in refused(capsys, 'explore', 'paper_fig7', '--set',
                                                    'friction.static.scatter=0.1', '--out', 'page.html')

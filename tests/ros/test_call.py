@@ -104,7 +104,7 @@ def test_parameters(folder: Path, capsys: Capture) -> None:
 
 def test_nobody_answers(folder: Path, capsys: Capture) -> None:
     line = refused(capsys, 'call', 'reset', '--timeout', '3', code=1)
-    assert line == (f'stickslip: no node /feed_axis offers reset (looked for 3 s); there is {AXIS}: name it with'
+    assert line == (f'stickslip: no node /feed_axis offers reset (looked for 3 s); found {AXIS}: name it with'
                     ' --node\n')
     assert '--node' in refused(capsys, 'call', 'reset', '--node', 'a b')
 

@@ -58,6 +58,7 @@ _CREEPS = 1e-9   # m/s: a slider that has just broken away
 _LEAST_FORCE = 1e-6   # of the largest force: no break-away is known better
 _WORSE = 1.3     # times what is known of a force and a time: parabolas, and times, are chosen by the readings
 _EVEN = 12.0**0.5   # the standard deviation of what is anywhere in a step is the step over that
+_ASIDE = 8.0     # times the median of how far break-aways are off, or what is known: one further off is of no rest
 _STRETCH = 'initial.stretch'
 _STEP = 0.02   # of the logarithm of a mass: how far noise of the force moves it is taken in such steps
 _LOOSE = 2.0   # ranges: the standard deviation of a weak prior, which holds what the data do not determine
@@ -312,7 +313,7 @@ class FitProblem:
 
         A force that a controller holds, as one that acts late may be, breaks the slider away at one of its steps; a
         line through the readings does anywhere in between.  Coefficients that scatter by more are known less well by
-        as much (Birge's ratio).
+        as much (Birge's ratio).  One far from most does not count: the slider crept there, and did not rest.
         """
         deviations, period, readings = (self.measurement.force_deviations, self.measurement.period,
                                         self.measurement.force_readings)
@@ -328,8 +329,11 @@ class FitProblem:
         least = _LEAST_FORCE * float(np.abs(readings.values).max())
         found = np.maximum(found, least) / dynamics.axis.normal_force
         apart = static_apart(dynamics, self._static_coefficients(dynamics))
+        aside = np.abs(apart - np.median(apart))
+        counts = aside <= _ASIDE * np.maximum(found, np.median(aside))
+        found = np.where(counts, found, np.inf)
         off = (apart - np.average(apart, weights=found**-2.0)) / found
-        return np.asarray(found * max(square_cost(off) / max(len(off) - 1, 1), 1.0)**0.5)
+        return np.asarray(found * max(square_cost(off) / max(np.count_nonzero(counts) - 1, 1), 1.0)**0.5)
 
     def _of_static(self, values: Numbers) -> Numbers:
         """Return by how much break-aways took more than static friction, in standard deviations."""
