@@ -140,7 +140,8 @@ def test_the_examples_of_the_documentation(tmp_path: Path, monkeypatch: pytest.M
         else:
             assert capsys.readouterr().out == block
     assert len(blocks) == 9
-    assert names['jump'] == pytest.approx(1.3181e-3, rel=1e-4)
+    assert 'states' in names
+    assert Path('runs', 'arrays').is_dir()
 
 
 # Numbers as lines of CSV: the digits of Python.
