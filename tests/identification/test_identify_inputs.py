@@ -11,8 +11,10 @@ import stickslip_sim as stickslip
 from stickslip_sim import Simulator
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.types import Instant
+from stickslip_sim.identification.free_parameters import free_parameters
 from stickslip_sim.identification.identified import FOUND, NOT_IDENTIFIABLE, VOID
 from stickslip_sim.identification.identified_scene import IDENTIFIED_SCENE
+from stickslip_sim.identification.identify import _problem
 from stickslip_sim.identification.report import write_results
 from stickslip_sim.recording.measured_run import MeasuredRun
 from stickslip_sim.scene import changed
@@ -254,6 +256,20 @@ def test_an_axis_under_a_controller(late: float, tmp_path: Path) -> None:
         assert estimate.kind == FOUND, name
         assert low - 0.3 * (high - low) < truth(LOOP, name) < high + 0.3 * (high - low), estimate
         assert high - low < 0.2 * truth(LOOP, name), estimate
+
+
+def test_a_slider_that_crept_is_no_break_away(tmp_path: Path) -> None:
+    """Of 15 break-aways one was such, at kinetic friction: static friction was found 24 % low, within 4 %."""
+    name = 'friction.static.initial'
+    problem = _problem(positioned_by_a_controller(tmp_path / 'run', 0.0), LOOP,
+                       free_parameters(LOOP, {'parameters': {name: between(0.05, 0.2)}}), {})
+    values = problem.values(problem.start)
+    dynamics = problem.model.dynamics(values)
+    assert dynamics is not None
+    assert np.isfinite(problem._deviations_of_static(dynamics, values)).all()
+    *others, last = problem._break_aways
+    problem._break_aways = *others, last._replace(time=last.time + 0.2)
+    assert np.flatnonzero(np.isinf(problem._deviations_of_static(dynamics, values))).tolist() == [len(others)]
 
 
 PUSHES = (0.0, 0.2, 0.6, 0.61, 1.0, 1.2, 1.7, 1.71)   # s
