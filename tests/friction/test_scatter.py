@@ -12,6 +12,7 @@ import pytest
 from scipy import stats
 
 from stickslip_sim.axis import Axis, Friction, InitialState
+from stickslip_sim.axis.parameters import check_start
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.core.input_profile import constant
 from stickslip_sim.core.types import Event, EventKind, Mode
@@ -223,6 +224,18 @@ def test_a_scatter_of_one_direction_alone_is_refused() -> None:
         Scatter(0.6)
     with pytest.raises(InputError, match='seed'):
         Scatter(0.1, 0.0, -1)
+
+
+def test_a_contact_starts_with_no_more_than_its_first_stick_holds() -> None:
+    """The limit without the factor counted: such a run yielded at once, with a slider at rest."""
+    axis = paper_axis(COMPLIANT)
+    seed = next(seed for seed in range(9) if factor_of(Scatter(0.1, 0.0, seed), 0) < 0.95)
+    friction = replace(axis.friction, static=replace(axis.friction.static, scatter=Scatter(0.1, 0.0, seed)))
+    axis, held = replace(axis, friction=friction), axis.normal_force * law_of_stick(friction, 0).limit
+    start = InitialState(rest_time=math.inf, deflection=held / COMPLIANT.stiffness)
+    check_start(axis, replace(start, deflection=0.999 * start.deflection))
+    with pytest.raises(InputError, match='carries at most N mu_s'):
+        check_start(axis, replace(start, deflection=1.001 * start.deflection))
 
 
 def test_the_tool_takes_a_seed(capsys: Capture) -> None:

@@ -171,7 +171,8 @@ def check_start(axis: Axis, initial: InitialState, load: float = 0.0) -> None:
         raise InputError('initial.deflection', initial.deflection, '0 with a rigid contact',
                          'leave it out, or use contact.type: compliant')
     force = axis.contact.stiffness * initial.deflection + axis.contact.damping * initial.velocity
-    static = axis.friction.along(force).static
+    friction = axis.friction.along(force)
+    static = friction.static.of_stick(0, friction.kinetic.coefficients[0])   # of a run that begins with a stick
     limit = (axis.normal_force + load) * static.coefficient(initial.rest_time)
     if not abs(force) <= limit:
         raise InputError('initial.deflection', initial.deflection,
