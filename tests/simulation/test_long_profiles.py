@@ -5,6 +5,7 @@
 import math
 import random
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
@@ -15,8 +16,8 @@ import pytest
 from stickslip_sim.axis import InitialState, pack
 from stickslip_sim.axis.records import PLAIN
 from stickslip_sim.core import hot_path
-from stickslip_sim.core.errors import UnsoundError
-from stickslip_sim.core.input_profile import InputProfile, steps, table
+from stickslip_sim.core.errors import InputError, UnsoundError
+from stickslip_sim.core.input_profile import InputProfile, constant, sinusoids, steps, table
 from stickslip_sim.core.time_grid import instants
 from stickslip_sim.core.types import Event, Instant, Sample
 from stickslip_sim.simulation.simulator import Simulator
@@ -249,3 +250,17 @@ def test_a_simulator_begun_anew_does_what_a_new_one_does(kind: str) -> None:
     Simulator(AXIS, initial, *inputs).take_samples(at, rows[2])
     assert np.array_equal(rows[1], rows[2])
     assert not np.array_equal(rows[0], rows[2])
+
+
+def test_a_simulator_is_begun_anew_with_no_more_than_it_has_room_for() -> None:
+    """More sinusoids than at its start were taken without a word; a load at the start did not count."""
+    shaken = replace(constant(0.0), sinusoids=sinusoids('force', [1.0, 2.0], [3.0, 5.0]))
+    simulator = Simulator(AXIS, InitialState(), constant(2e-3), constant(0.0))
+    before = simulator.checkpoint()
+    with pytest.raises(InputError, match='force.sinusoids = 2 is refused: must be at most 0'):
+        simulator.restart(InitialState(), constant(2e-3), shaken)
+    assert simulator.checkpoint() == before
+    pressed = paper_axis(COMPLIANT)
+    held = InitialState(deflection=1.5 * pressed.normal_force * pressed.friction.static.limit / COMPLIANT.stiffness)
+    loaded = Simulator(pressed, held, constant(0.0), constant(0.0), load=constant(pressed.normal_force))
+    loaded.restart(held, constant(0.0), constant(0.0))

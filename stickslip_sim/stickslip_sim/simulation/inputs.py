@@ -20,13 +20,14 @@ class Inputs:
     def __init__(self, drive: InputProfile, force: InputProfile) -> None:
         self._drive_pieces, self._force_pieces = _KeptPieces(), _KeptPieces()
         self.most_sinusoids = len(drive.sinusoids) + len(force.sinusoids)    # that the inputs can have
+        self._first = drive, force
         self.take(drive, force)
         self.reset()
 
     def take(self, drive: InputProfile, force: InputProfile) -> None:
-        """Let `reset` take these profiles, of no more sinusoids; raises InputError when one has no meaning."""
-        drive.check('drive')
-        force.check('force')
+        """Let `reset` take these profiles; raises InputError when one has no meaning, or more sinusoids than before."""
+        _check('drive', drive, 'm/s', self._first[0])
+        _check('force', force, 'N', self._first[1])
         self._first = drive, force
 
     def reset(self) -> tuple[Piece, Piece]:

@@ -33,7 +33,8 @@ class Simulator:
     def __init__(self, axis: Axis, initial: InitialState, drive: InputProfile, force: InputProfile,
                  solver: Solver | SolverOf = exact.SOLVER, accounting: bool = False,
                  load: InputProfile | None = None) -> None:
-        check_start(axis, initial, load.value_at(0.0) if load else 0.0)
+        self._load = load.value_at(0.0) if load else 0.0    # at the start
+        check_start(axis, initial, self._load)
         self.inputs = self._inputs = LoadedInputs(drive, force, load) if load else Inputs(drive, force)
         self._initial = initial
         self._solved = SolvedAxis(axis, solver if callable(solver) else lambda _: solver, self._inputs, load,
@@ -47,8 +48,11 @@ class Simulator:
         return self._waiting
 
     def restart(self, initial: InitialState, drive: InputProfile, force: InputProfile) -> None:
-        """Begin anew as `reset`, with another initial state, and other input profiles of no more sinusoids."""
-        check_start(self.axis, initial)
+        """Begin anew as `reset`, with another initial state and other input profiles, of no more sinusoids each.
+
+        Raises InputError, and leaves all as it is.
+        """
+        check_start(self.axis, initial, self._load)
         self._inputs.take(drive, force)
         self._initial = initial
         self.reset()
