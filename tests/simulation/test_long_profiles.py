@@ -257,7 +257,7 @@ def test_a_simulator_is_begun_anew_with_no_more_than_it_has_room_for() -> None:
     shaken = replace(constant(0.0), sinusoids=sinusoids('force', [1.0, 2.0], [3.0, 5.0]))
     simulator = Simulator(AXIS, InitialState(), constant(2e-3), constant(0.0))
     before = simulator.checkpoint()
-    with pytest.raises(InputError, match='force.sinusoids = 2 is refused: must be at most 0'):
+    with pytest.raises(InputError, match=r'force\.sinusoids = 2 is refused: must be at most 0'):
         simulator.restart(InitialState(), constant(2e-3), shaken)
     assert simulator.checkpoint() == before
     pressed = paper_axis(COMPLIANT)
