@@ -337,7 +337,9 @@ def test_the_sources_compile_against_the_official_headers_and_need_the_c_library
 
 def test_ecos_has_the_same_number(tmp_path: Path) -> None:
     fmu = exported(tmp_path, 'paper_fig8', {})
-    program = ('from ecospy import EcosSimulation, EcosSimulationStructure\n'
+    program = ('import ctypes\n'
+               f'ctypes.CDLL({sys.prefix + "/lib/libtbb.so.12"!r})\n'  # ecospy's own library does not look there
+               'from ecospy import EcosSimulation, EcosSimulationStructure\n'
                'structure = EcosSimulationStructure()\n'
                f'structure.add_model("axis", {str(fmu.path)!r})\n'
                'simulation = EcosSimulation(structure=structure, step_size=0.125)\n'
