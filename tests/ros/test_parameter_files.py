@@ -17,8 +17,8 @@ from stickslip_sim.ros.node.parameters import scene_at_start
 from stickslip_sim.ros.programs import GivenParameters, NodeParameters
 from stickslip_sim.scene import scene_from_values, scene_names
 from stickslip_sim.scene.ros_yaml import plain_value
+from tests.support.axis_here import axis_here
 from tests.support.forked_programs import refusal_of, ros_args
-from tests.support.ros_nodes import live_axis
 from tests.support.scene_files import HEAD, write
 
 pytestmark = pytest.mark.ros
@@ -100,7 +100,7 @@ def test_two_axes_and_a_controller_share_a_file(tmp_path: Path) -> None:
     path = tmp_path / 'cell.yaml'
     path.write_text(TWO_AXES)
     for namespace, *expected in (('/x', 'positioning', 0, 2500.0), ('/y', 'paper_fig7', 4, 350 * 9.80665)):
-        with live_axis('--params-file', str(path), namespace=namespace) as (_, axis):
+        with axis_here('--params-file', path, '-r', f'__ns:={namespace}') as axis:
             scene, seed, force = axis.values('scene', 'seed', 'axis.normal_force')
             assert [scene.string_value, seed.integer_value, force.double_value] == expected
 

@@ -13,9 +13,9 @@ import pytest
 
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
+from tests.support.axis_here import axis_here
 from tests.support.forked_programs import refusal_of
 from tests.support.node_processes import executable
-from tests.support.ros_nodes import live_axis
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -118,7 +118,7 @@ class TestFiles:
             file.write_text(f'/**:\n  ros__parameters: {text}\n' if text[0] == '{'
                             else f'/**:\n  ros__parameters:\n    {text}\n')
             words = ['--params-file', str(file), *words]
-        with live_axis(*words) as (_, axis):
+        with axis_here(*words) as axis:
             of_the_node = axis.values('scene', 'axis.mass', 'contact.model', 'friction.static.law')
             assert [value.string_value or value.double_value for value in of_the_node[:2]] == [scene, mass]
             if texts[0].startswith('scene'):
@@ -126,15 +126,16 @@ class TestFiles:
                 assert [value.string_value for value in of_the_node[2:]] == [
                     same['contact.model'], same['friction.static.law']]
 
-    def test_one_without_friction_and_one_for_other_nodes_are_warned_of(self, tmp_path: Path) -> None:
+    def test_one_without_friction_and_one_for_other_nodes_are_warned_of(self, tmp_path: Path,
+                                                                       capfd: pytest.CaptureFixture[str]) -> None:
         """And an unusual number that is meant is taken."""
         mine, other = tmp_path / 'mine.yaml', tmp_path / 'other.yaml'
         mine.write_text('/**:\n  ros__parameters:\n    scene: position\n')
         other.write_text('/press/feed_axis:\n  ros__parameters:\n    axis: {mass: 1.0}\n')
         files = ('--params-file', str(mine), '--params-file', str(other))
-        with live_axis(*files, 'drive.velocity:=5.0', 'meant:=[drive.velocity]') as (process, axis):
-            assert axis.latest('slider_state').drive_velocity == 5.0
-        warned = process.errors
+        with axis_here(*files, 'drive.velocity:=5.0', 'meant:=[drive.velocity]') as axis:
+            assert axis.values('drive.velocity')[0].double_value == 5.0
+        warned = capfd.readouterr().err
         assert 'the scene position leaves out the friction: the axis has none; did you mean positioning?' in warned
         assert f'{other} has no section for /feed_axis' in warned
         assert f'{mine} has no section' not in warned

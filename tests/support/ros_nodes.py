@@ -3,6 +3,7 @@
 """A client that talks to real nodes over DDS.  Conditions have deadlines."""
 
 import importlib
+import math
 import threading
 import warnings
 from collections import Counter
@@ -37,6 +38,7 @@ from stickslip_msgs.msg import (  # noqa: E402
     SliderState,
     StepTiming,
 )
+from stickslip_msgs.srv import Step  # noqa: E402
 from tests.support.node_processes import NodeProcess, assert_clean, running  # noqa: E402
 from tests.support.topic_ears import Ears  # noqa: E402
 from tests.support.waiting import DEADLINE, first_of, wait_for  # noqa: E402
@@ -55,7 +57,43 @@ def nanoseconds(time: Any) -> int:
     return int(time.sec) * 1_000_000_000 + int(time.nanosec)
 
 
-class Client:
+class Asker:
+    """Calls services of a node; how, its heirs say."""
+
+    def call(self, kind: Any, name: str, node: str = 'feed_axis', /, **request: Any) -> Any:
+        """Return the answer of a service."""
+        raise NotImplementedError
+
+    def trigger(self, name: str) -> Any:
+        return self.call(Trigger, name)
+
+    def switch(self, name: str, on: bool) -> Any:
+        return self.call(SetBool, name, data=on)
+
+    def step(self, count: int, velocity: float = math.nan, force: float = math.nan) -> Any:
+        """Make steps; return the answer."""
+        answer = self.call(Step, 'step', steps=count, velocity=velocity, force=force)
+        assert answer.success, answer.message
+        return answer
+
+    def set_parameters(self, node: str = 'feed_axis', /, **values: object) -> Any:
+        """Set parameters of a node together; `__` in a name stands for a dot."""
+        parameters = [Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
+                      for name, value in values.items()]
+        return self.call(SetParametersAtomically, 'set_parameters_atomically', node, parameters=parameters).result
+
+    def parameter_names(self) -> list[str]:
+        names: list[str] = self.call(ListParameters, 'list_parameters').result.names
+        return names
+
+    def describe(self, *names: str) -> Any:
+        return self.call(DescribeParameters, 'describe_parameters', names=list(names)).descriptors
+
+    def values(self, *names: str) -> Any:
+        return self.call(GetParameters, 'get_parameters', names=list(names)).values
+
+
+class Client(Asker):
     """Hears the topics of a node, sends commands, calls services; its callbacks run in threads.
 
     It hears the friction when asked to: a node makes and sends nothing that nobody hears, a thousand times a second.
@@ -187,9 +225,6 @@ class Client:
                 break
         assert answered.is_set(), f'{node} does not answer'
 
-    def trigger(self, name: str) -> Any:
-        return self.call(Trigger, name)
-
     def reset(self) -> Any:
         """Let a new run begin; return its first state that is heard, which the old run's come before."""
         infos, states = len(self.heard['run_info']), len(self.heard['slider_state'])
@@ -199,30 +234,11 @@ class Client:
         start = nanoseconds(info.start_time)
         return self.next('slider_state', lambda state: nanoseconds(state.header.stamp) >= start, begin=states)
 
-    def switch(self, name: str, on: bool) -> Any:
-        return self.call(SetBool, name, data=on)
-
     def now(self) -> float:
         """Return a simulation time that an axis which runs has reached, s; what is heard next may be older."""
         answer = self.switch('set_paused', False)
         assert answer.success
         return 1.00001 * float(answer.message.split()[-2])    # of six digits
-
-    def set_parameters(self, node: str = 'feed_axis', /, **values: object) -> Any:
-        """Set parameters of a node together; `__` in a name stands for a dot."""
-        parameters = [Parameter(name.replace('__', '.'), value=value).to_parameter_msg()
-                      for name, value in values.items()]
-        return self.call(SetParametersAtomically, 'set_parameters_atomically', node, parameters=parameters).result
-
-    def parameter_names(self) -> list[str]:
-        names: list[str] = self.call(ListParameters, 'list_parameters').result.names
-        return names
-
-    def describe(self, *names: str) -> Any:
-        return self.call(DescribeParameters, 'describe_parameters', names=list(names)).descriptors
-
-    def values(self, *names: str) -> Any:
-        return self.call(GetParameters, 'get_parameters', names=list(names)).values
 
     def status(self, name: str, is_it: Callable[[dict[str, str]], bool] = lambda _: True,
                level: bytes | None = None, begin: int | None = None) -> Any:

@@ -19,9 +19,10 @@ from stickslip_sim.recording import open_bag, read_run
 from stickslip_sim.scene import scene_from_values
 from stickslip_sim.simulation import Fault
 from stickslip_sim.simulation.faults import RULES
+from tests.support.axis_here import axis_here
 from tests.support.node_processes import recording_into
 from tests.support.rigs import FIELDS, assert_same_states, made_again
-from tests.support.ros_nodes import Client, live_axis
+from tests.support.ros_nodes import Asker, Client, live_axis
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -36,7 +37,7 @@ MASSES = (350.0, 200.0, 500.0, -1.0, math.nan, 0.0)
 class Storm:
     """Calls in any order, each with an answer that is known beforehand."""
 
-    def __init__(self, axis: Client, mode: str, seed: int) -> None:
+    def __init__(self, axis: Asker, mode: str, seed: int) -> None:
         self.axis, self.stream = axis, random.Random(seed)
         self.is_stepped, self.is_paused, self.is_recording = mode == 'lockstep', False, False
         self.values = dict(load_scene('paper_fig8', {'time.mode': mode}).values)
@@ -155,12 +156,12 @@ class LiveStorm(Storm):
 
     def __init__(self, axis: Client, seed: int) -> None:
         super().__init__(axis, 'realtime', seed)
-        self.is_recording = True
+        self.client, self.is_recording = axis, True
 
     def call(self) -> None:
         super().call()
-        self.axis.send_velocity(self.stream.uniform(-0.005, 0.005))
-        self.axis.send_force(self.stream.choice([0.0, 150.0, math.nan]))
+        self.client.send_velocity(self.stream.uniform(-0.005, 0.005))
+        self.client.send_force(self.stream.choice([0.0, 150.0, math.nan]))
 
     def inject(self) -> None:
         kind, value = self.stream.choice([('friction_scale', 1.5), ('force_pulse', 200.0), ('drive_freeze', 0.0),
@@ -178,13 +179,14 @@ class LiveStorm(Storm):
 
 
 class TestStorm:
-    def test_in_lockstep_the_motion_is_that_of_the_orders(self, tmp_path: Path) -> None:
-        with live_axis('time.mode:=lockstep', folder=tmp_path) as (_, axis):
+    def test_in_lockstep_the_motion_is_that_of_the_orders(self, tmp_path: Path,
+                                                          monkeypatch: pytest.MonkeyPatch) -> None:
+        monkeypatch.chdir(tmp_path)
+        with axis_here('time.mode:=lockstep') as axis:
             storm = Storm(axis, 'lockstep', 1)
             for _ in range(CALLS):
                 storm.call()
-            answer = axis.call(Step, 'step', steps=300, velocity=math.nan, force=math.nan)
-            storm.follow(answer, 300, math.nan, math.nan)
+            storm.follow(axis.step(300), 300, math.nan, math.nan)
 
     def test_in_real_time_the_bag_has_all_that_the_motion_depends_on(self, tmp_path: Path) -> None:
         with live_axis(*recording_into(tmp_path / 'run'), folder=tmp_path) as (_, axis):
@@ -200,14 +202,14 @@ class TestStorm:
 def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
     """As often as a client asks that is not sure of its answer; what was ordered before is not forgotten unseen."""
     folder = tmp_path / 'run'
-    with live_axis('time.mode:=lockstep', *recording_into(folder), folder=tmp_path) as (_, axis):
+    with axis_here('time.mode:=lockstep', *recording_into(folder)) as axis:
         for _ in range(2):
             answer = axis.trigger('reset')
             assert answer.success
             assert answer.message == 'simulation time and steps are at 0; the recording goes on'
         assert axis.call(InjectFault, 'inject_fault', kind='drive_freeze', duration=1.0).success
         assert not axis.trigger('reset').success
-        assert axis.call(Step, 'step', steps=10, velocity=0.01, force=math.nan).success
+        axis.step(10, 0.01)
         assert 'refused while recording' in axis.trigger('reset').message
         assert axis.switch('record', False).success
         assert axis.trigger('reset').message == 'simulation time and steps begin anew at 0'
@@ -215,18 +217,19 @@ def test_a_recorded_run_that_has_not_begun_can_be_reset(tmp_path: Path) -> None:
     assert steps.tolist() == list(range(11))
 
 
-def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Path) -> None:
+def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Path,
+                                                                    capfd: pytest.CaptureFixture[str]) -> None:
     """The second run of a bench in lock-step: its states begin at 0 s as those of the first do."""
     folders = [tmp_path / name for name in ('first', 'second')]
-    with live_axis('time.mode:=lockstep', *recording_into(folders[0]), folder=tmp_path) as (process, axis):
+    with axis_here('time.mode:=lockstep', *recording_into(folders[0])) as axis:
         for folder in folders:
             if folder is folders[1]:
                 assert axis.trigger('reset').success
                 assert axis.set_parameters(record__folder=str(folder)).successful
                 assert axis.switch('record', True).success
-            assert axis.call(Step, 'step', steps=10, velocity=0.01, force=math.nan).success
+            axis.step(10, 0.01)
             assert axis.switch('record', False).success
-        _, log = process.end()
+    log = capfd.readouterr().err
     for text in (*(f'recorded into {folder}' for folder in folders), 'simulation time and steps begin anew at 0'):
         assert f': {text}\n' in log
     limits = limits_of({'window': {'begin': 0.0, 'end': 0.01}, 'limits': {'peak_speed': {'max': 1.0}}})
@@ -243,38 +246,34 @@ def test_a_recording_that_begins_at_step_0_is_as_one_from_the_start(tmp_path: Pa
 
 
 @pytest.mark.parametrize('is_read', [False, True])
-def test_a_fault_of_the_scene_that_does_nothing_is_warned_of(is_read: bool) -> None:
+def test_a_fault_of_the_scene_that_does_nothing_is_warned_of(is_read: bool, capfd: pytest.CaptureFixture[str]) -> None:
     fault = ('ids:=[gap]', 'kinds:=[encoder_dropout]', 'starts:=[0.1]', 'durations:=[0.1]', 'values:=[0.5]')
-    given = (*(f'faults.{text}' for text in fault), f'joint_interface.enabled:={is_read}')
-    with live_axis('time.mode:=lockstep', *given) as (process, _):
+    with axis_here('time.mode:=lockstep', *(f'faults.{text}' for text in fault), f'joint_interface.enabled:={is_read}'):
         pass
-    assert ('encoder_dropout does nothing: no encoder is read' in process.errors) is not is_read
+    assert ('encoder_dropout does nothing: no encoder is read' in capfd.readouterr().err) is not is_read
 
 
 def test_what_was_cleared_is_reported_and_the_zeros_of_the_type() -> None:
     """`ros2 service call /feed_axis/step ... '{steps: 10}'` stops the drive, and says so."""
-    with live_axis('time.mode:=lockstep', 'command.timeout:=0.05', 'command.on_timeout:=fault') as (_, axis):
-        def step(count: int, velocity: float = math.nan) -> Any:
-            return axis.call(Step, 'step', steps=count, velocity=velocity, force=math.nan).state
+    with axis_here('time.mode:=lockstep', 'command.timeout:=0.05', 'command.on_timeout:=fault') as axis:
+        def velocity_after(count: int, velocity: float = math.nan) -> Any:
+            return axis.step(count, velocity).state.drive_velocity
 
         def clear() -> str:
             message: str = axis.trigger('clear_faults').message
             return message
 
-        def said(**request: float) -> str:
-            message: str = axis.call(Step, 'step', steps=1, **request).message
-            return message
-
-        assert 'in place' not in said(velocity=math.nan, force=math.nan)
-        assert said().endswith('; velocity = 0 in place of the input profile of the scene: NaN leaves it')
-        assert 'in place' not in said()
+        assert 'in place' not in axis.step(1).message
+        assert axis.step(1, 0.0, 0.0).message.endswith(
+            '; velocity = 0 in place of the input profile of the scene: NaN leaves it')
+        assert 'in place' not in axis.step(1, 0.0, 0.0).message
         assert clear() == 'cleared: there were none'
         for fault in ('a', 'b'):
             assert axis.call(InjectFault, 'inject_fault', id=fault, kind='drive_freeze', duration=1.0).success
         assert clear() == 'cleared: a, b'
-        assert step(1, 0.01).drive_velocity == 0.01
-        assert step(100).drive_velocity == step(1, 0.01).drive_velocity == 0.0     # it takes none any more
+        assert velocity_after(1, 0.01) == 0.01
+        assert velocity_after(100) == velocity_after(1, 0.01) == 0.0     # it takes none any more
         assert axis.call(InjectFault, 'inject_fault', id='c', kind='friction_scale', duration=1.0, value=1.5).success
         assert clear() == 'cleared: c, the command time-out (the drive takes commands again)'
-        assert step(1, 0.01).drive_velocity == 0.01
+        assert velocity_after(1, 0.01) == 0.01
         assert clear() == 'cleared: there were none'

@@ -23,12 +23,12 @@ from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 
 from stickslip_msgs.msg import SliderState
-from stickslip_msgs.srv import Step
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import Bag, open_bag, read_run
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.scene import Scene
+from tests.support.axis_here import axis_here
 from tests.support.busy_machine import judged_by_time
 from tests.support.node_processes import NodeProcess, recording_into
 from tests.support.rigs import FIELDS, assert_same_states, made_again, run
@@ -83,12 +83,6 @@ def wait_for_steps(axis: Client, count: int) -> None:
     axis.next('slider_state', lambda state: state.step > step)
 
 
-def steps(axis: Client, count: int, velocity: float = math.nan, force: float = math.nan) -> Any:
-    answer = axis.call(Step, 'step', steps=count, velocity=velocity, force=force)
-    assert answer.success, answer.message
-    return answer
-
-
 def repeat_in_lockstep(axis: Client, recorded: Bag) -> None:
     """Give the commands of a bag with ~/step, before the steps that they came before."""
     commands: dict[int, dict[str, float]] = {}
@@ -98,7 +92,7 @@ def repeat_in_lockstep(axis: Client, recorded: Bag) -> None:
         commands.setdefault(message.sequence, {})[name] = getattr(content, name)
     begins = [1, *sorted(set(commands) - {0, 1}), recorded.counts['/slider_state']]
     for begin, end in itertools.pairwise(begins):
-        steps(axis, end - begin, **commands.get(begin, {}))
+        axis.step(end - begin, **commands.get(begin, {}))
 
 
 class TestTheSameRun:
@@ -131,16 +125,15 @@ class TestTheSameRun:
     def test_the_receipt_is_that_of_the_offline_run_however_long(self, tmp_path: Path) -> None:
         """A second time, after a reset, for 13 minutes and 4 000 events; the events of the first do not count."""
         scene = load_scene('paper_fig8', {'time.rate': 1.0})
-        with node_of(scene, tmp_path, 'long', 'lockstep') as (_, axis):
-            steps(axis, 50)
-            assert axis.switch('record', False).success
+        (tmp_path / 'long.yaml').write_text(scene.text)
+        words = ('--params-file', tmp_path / 'long.yaml', 'time.mode:=lockstep', 'record.each_reset:=true')
+        with axis_here(*words, *recording_into(tmp_path / 'run')) as axis:
+            axis.step(50)
             assert axis.trigger('reset').success
-            assert axis.set_parameters(record__folder=str(tmp_path / 'again')).successful
-            assert axis.switch('record', True).success
             for _ in range(2):
-                steps(axis, 400)
+                axis.step(400)
         results, offline = (receipt['results'] for receipt in (
-            open_bag(tmp_path / 'again').receipt, simulate_events(scene, 800.0).receipt))
+            open_bag(tmp_path / 'run_2').receipt, simulate_events(scene, 800.0).receipt))
         for each in (results, offline):
             del each['root_iterations']    # they depend on where the steps end
         assert sum(results['events'].values()) > 4_000
@@ -207,7 +200,7 @@ class TestClock:
     def test_after_the_state_of_its_step_at_its_own_rate(self, clocked: Client) -> None:
         heard = clocked.heard['/clock']
         for _ in range(22):
-            steps(clocked, 1)
+            clocked.step(1)
         wait_for(lambda: heard[-1][0] == 20 * MS, 'the last tick')
         assert [time for time, _ in heard] == [math.ceil(k * 10 / 3) * MS for k in range(7)]
         assert all(state >= time for time, state in heard)
@@ -218,7 +211,7 @@ class TestClock:
         clocked.add(follower)
         try:
             def follows() -> bool:
-                steps(clocked, 10)   # more of them: the axis may not have found the follower yet
+                clocked.step(10)   # more of them: the axis may not have found the follower yet
                 now: int = follower.get_clock().now().nanoseconds
                 return now > 0 and now == clocked.heard['/clock'][-1][0]
 
@@ -255,13 +248,13 @@ def test_no_state_of_a_long_request_is_lost_for_a_slow_listener() -> None:
         assert said is not None
 
         def is_listening() -> bool:
-            steps(axis, 1)
+            axis.step(1)
             return bool(select.select([said], [], [], 0.05)[0])
 
         wait_for(is_listening, 'the listener')
         listener.send_signal(signal.SIGSTOP)
         try:
-            steps(axis, 1500)
+            axis.step(1500)
         finally:
             listener.send_signal(signal.SIGCONT)
         first, complete = listener.communicate(timeout=DEADLINE)[0].split()
