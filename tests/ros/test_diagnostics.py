@@ -22,6 +22,7 @@ from stickslip_sim.core.time_grid import NANOSECONDS
 from stickslip_sim.ros.health_node import health_of
 from stickslip_sim.ros.node.clock import ClockIn
 from stickslip_sim.ros.node.graph_monitor import PublisherWatch
+from tests.support.axis_here import axis_here
 from tests.support.forked_programs import ended_at_once, refusal_of, ros_args
 from tests.support.node_processes import attentive, executable, recording_into, running, with_small_files
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
@@ -132,7 +133,7 @@ class TestClock:
         assert all(text in line for text in reported), line
 
     def test_its_own_is_not_followed_later(self) -> None:
-        with live_axis('time.mode:=lockstep') as (_, axis):
+        with axis_here('time.mode:=lockstep') as axis:
             answer = axis.set_parameters(use_sim_time=True)
             assert (answer.successful, answer.reason.split(':')[0]) == (False, 'use_sim_time = True is refused')
             assert axis.set_parameters(use_sim_time=False).successful
@@ -181,24 +182,20 @@ class TestClock:
 
 
 class TestHealth:
-    def test_one_that_runs_is_well_one_of_another_namespace_is_not_meant(self) -> None:
-        with live_axis(*SLOW, namespace='/press'):
-            done = subprocess.run([executable('health'), *ros_args('-r', '__ns:=/press', 'patience:=20.0')],
-                                  capture_output=True, text=True, timeout=60, check=False)
-            code, errors = ended_at_once('health', 'patience:=3.0')
+    def test_one_that_runs_is_well_one_of_another_namespace_is_not_meant_and_one_that_hangs_says_nothing(self) -> None:
+        there = ('-r', '__ns:=/press')
+        with live_axis(*SLOW, namespace='/press') as (process, _):
+            done = subprocess.run([executable('health'), *ros_args(*there, 'patience:=20.0')], capture_output=True,
+                                  text=True, timeout=60, check=False)
+            elsewhere = ended_at_once('health', 'patience:=3.0')
+            process.send(signal.SIGSTOP)
+            hanging = ended_at_once('health', *there, 'patience:=1.5')
+            process.send(signal.SIGCONT)
         assert (done.returncode, done.stderr) == (0, '')
         assert done.stdout.startswith('/press/feed_axis is well')
-        assert code == 1
-        assert 'in this namespace' in errors
-
-    def test_one_that_hangs_says_nothing(self) -> None:
-        with running(*SLOW) as process:
-            with client() as axis:
-                axis.connect()
-            process.send(signal.SIGSTOP)
-            code, errors = ended_at_once('health', 'patience:=1.5')
-        assert code == 1
-        assert errors.startswith('health: /feed_axis published nothing on /diagnostics within 1.5 s')
+        assert (elsewhere[0], 'in this namespace' in elsewhere[1]) == (1, True)
+        assert hanging[0] == 1
+        assert hanging[1].startswith('health: /press/feed_axis published nothing on /diagnostics within 1.5 s')
 
     def test_one_whose_recording_failed_is_not_well(self, tmp_path: Path) -> None:
         with running(*recording_into(tmp_path / 'run'), prepare=with_small_files):

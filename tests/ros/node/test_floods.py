@@ -8,61 +8,58 @@ import resource
 import signal
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from stickslip_msgs.msg import RigEvent
+from stickslip_msgs.msg import DriveVelocity, RigEvent
 from stickslip_msgs.srv import Step
+from stickslip_sim.bags.topics import DRIVE_VELOCITY
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag
+from stickslip_sim.ros.node.endpoints import publisher
 from stickslip_sim.simulation import RigEventKind
 from tests.support.node_processes import assert_clean, attentive, recording_into
 from tests.support.rigs import assert_same_states, made_again, rig_events_in
-from tests.support.ros_nodes import Client, live_axis
+from tests.support.ros_nodes import Client, bare_nodes, live_axis
 from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
-_SENDER = """
-import sys, time, rclpy
-from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
-from stickslip_msgs.msg import DriveVelocity
-
-rate, value = map(float, sys.argv[1:])
-rclpy.init()
-node = Node('controller')
-quality = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-out = node.create_publisher(DriveVelocity, 'drive_velocity', quality)
-begin, count = time.monotonic(), 0
-while True:
-    out.publish(DriveVelocity(velocity=value))
-    count += 1
-    print(count, flush=count % 100 == 0)
-    time.sleep(max(begin + count / rate - time.monotonic(), 0.0))
-"""
-
-
 class Controller:
-    """A process that sends a velocity at a rate, Hz, and is killed at the end; then `sent` is the most that it sent."""
+    """Sends a velocity at a rate, Hz, and then falls silent as one that is killed: the middleware is not told."""
 
-    def __init__(self, rate: float, value: float, out: Path) -> None:
+    def __init__(self, node: Any, rate: float, value: float) -> None:
         self.sent = 0
-        self._out = out
-        with out.open('w') as stream:
-            self._process = subprocess.Popen([sys.executable, '-c', _SENDER, str(rate), str(value)], stdout=stream)
+        self._out = publisher(node, DRIVE_VELOCITY)
+        self._rate, self._message = rate, DriveVelocity(velocity=value)
+        self._is_over = threading.Event()
+        self._thread = threading.Thread(target=self._send)
+
+    def _send(self) -> None:
+        begin = time.monotonic()
+        while not self._is_over.wait(max(begin + self.sent / self._rate - time.monotonic(), 0.0)):
+            self._out.publish(self._message)
+            self.sent += 1
 
     def __enter__(self) -> 'Controller':
+        self._thread.start()
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._process.kill()
-        self._process.wait()
-        self.sent = len(self._out.read_text().splitlines()) + 100    # it says so by the hundred
+        self._is_over.set()
+        self._thread.join()
+
+
+@pytest.fixture
+def nodes() -> Iterator[list[Any]]:
+    """Two for controllers."""
+    with bare_nodes('first', 'second') as both:
+        yield both
 
 
 def memory_of(pid: int) -> float:
@@ -71,49 +68,45 @@ def memory_of(pid: int) -> float:
     return pages * resource.getpagesize() / 1e6
 
 
-class TestFlood:
-    def test_of_commands_is_counted_and_costs_no_memory(self, tmp_path: Path) -> None:
-        with live_axis(folder=tmp_path) as (process, axis):
-            with Controller(10_000.0, 0.003, tmp_path / 'sent') as controller:
-                first = axis.next('timing', lambda timing: timing.total_received > 1000)
-                before = memory_of(process.pid)
-                timing = axis.next('timing', lambda timing: timing.total_received > first.total_received + 8000)
-                assert timing.step - first.step > 200
-                assert axis.next('slider_state').drive_velocity == 0.003
-                assert memory_of(process.pid) - before < 5.0
-            assert timing.total_refused == 0
-            assert timing.total_received <= controller.sent
-
-    def test_of_what_is_no_number_is_refused_counted_and_reported_once_a_second(self, tmp_path: Path) -> None:
-        with live_axis('drive.velocity:=0.001') as (process, axis):
-            begin = time.monotonic()
-            with Controller(2000.0, math.nan, tmp_path / 'sent') as controller:
-                timing = axis.next('timing', lambda timing: timing.total_refused > 2000)
-            assert timing.total_refused == timing.total_received <= controller.sent
-            assert axis.next('slider_state').drive_velocity == 0.001
-            lasted = time.monotonic() - begin
-        assert 1 <= process.errors.count('velocity = nan is refused: must be finite and within') <= lasted + 1
+def test_a_flood_of_commands_is_counted_reported_once_a_second_and_costs_no_memory(nodes: list[Any]) -> None:
+    with live_axis('drive.velocity:=0.001') as (process, axis):
+        begin = time.monotonic()
+        with Controller(nodes[0], 2000.0, math.nan) as of_none:
+            timing = axis.next('timing', lambda timing: timing.total_refused > 2000)
+        assert axis.next('slider_state').drive_velocity == 0.001
+        refused, received = timing.total_refused, timing.total_received
+        assert refused == received <= of_none.sent
+        lasted = time.monotonic() - begin
+        with Controller(nodes[1], 10_000.0, 0.003) as controller:
+            first = axis.next('timing', lambda timing: timing.total_received > received + 1000)
+            before = memory_of(process.pid)
+            timing = axis.next('timing', lambda timing: timing.total_received > first.total_received + 8000)
+            assert timing.step - first.step > 200
+            assert axis.next('slider_state').drive_velocity == 0.003
+            assert memory_of(process.pid) - before < 5.0
+        assert timing.total_refused <= of_none.sent
+        assert timing.total_received <= of_none.sent + controller.sent
+    assert 1 <= process.errors.count('velocity = nan is refused: must be finite and within') <= lasted + 1
 
 
-class TestController:
-    def test_that_dies_is_noticed_and_one_that_restarts_is_obeyed(self, tmp_path: Path) -> None:
-        wanted = {'command.timeout': 2.0, 'command.on_timeout': 'ramp_to_zero', 'command.timeout_deceleration': 0.1,
-                  'time.rate': 200.0}
-        words = [f'{name}:={value}' for name, value in wanted.items()]
-        with live_axis(*words, *recording_into(tmp_path / 'run')) as (_, axis):
-            for count, velocity in enumerate((0.004, 0.006), 1):
-                with Controller(200.0, velocity, tmp_path / 'sent'):
-                    axis.next('slider_state', runs_at(velocity))
-                axis.next('slider_state', runs_at(0.0))
-                timing = axis.next('timing', has_timed_out(count))
-                assert timing.total_timed_out == count
-                assert axis.status('command')[0].message.startswith('timed out: no drive velocity comes')
-        recorded = open_bag(tmp_path / 'run')
-        of_the_rig = set(RigEventKind) - {RigEventKind.TIME_LOST}    # which says how fast the machine was
-        kinds = [event.kind for event in rig_events_in(recorded, *of_the_rig)]
-        assert kinds == [RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
-        assert '2 time-outs' in recorded.receipt['timing']['verdict']
-        assert_same_states(recorded, made_again(recorded, load_scene('paper_fig8', wanted)))
+def test_a_controller_that_dies_is_noticed_and_one_that_restarts_is_obeyed(tmp_path: Path, nodes: list[Any]) -> None:
+    wanted = {'command.timeout': 2.0, 'command.on_timeout': 'ramp_to_zero', 'command.timeout_deceleration': 0.1,
+              'time.rate': 200.0}
+    words = [f'{name}:={value}' for name, value in wanted.items()]
+    with live_axis(*words, *recording_into(tmp_path / 'run')) as (_, axis):
+        for count, (node, velocity) in enumerate(zip(nodes, (0.004, 0.006)), 1):
+            with Controller(node, 200.0, velocity):
+                axis.next('slider_state', runs_at(velocity))
+            axis.next('slider_state', runs_at(0.0))
+            timing = axis.next('timing', has_timed_out(count))
+            assert timing.total_timed_out == count
+            assert axis.status('command')[0].message.startswith('timed out: no drive velocity comes')
+    recorded = open_bag(tmp_path / 'run')
+    of_the_rig = set(RigEventKind) - {RigEventKind.TIME_LOST}    # which says how fast the machine was
+    kinds = [event.kind for event in rig_events_in(recorded, *of_the_rig)]
+    assert kinds == [RigEventKind.COMMAND_TIMEOUT, RigEventKind.COMMAND_RESUMED, RigEventKind.COMMAND_TIMEOUT]
+    assert '2 time-outs' in recorded.receipt['timing']['verdict']
+    assert_same_states(recorded, made_again(recorded, load_scene('paper_fig8', wanted)))
 
 
 def runs_at(velocity: float) -> Callable[[Any], bool]:
@@ -206,8 +199,8 @@ class TestRefusals:
 
 def test_each_part_of_a_step_is_found(tmp_path: Path) -> None:
     path = tmp_path / 'budget.json'
-    subprocess.run([sys.executable, '-m', 'benchmarks.budget', '--seconds', '1', '--out', str(path)], timeout=DEADLINE,
-                   check=True)
+    subprocess.run([sys.executable, '-m', 'benchmarks.budget', '--seconds', '0.3', '--out', str(path)], check=True,
+                   timeout=DEADLINE)
     found = {row['part']: row['p50'] for row in json.loads(path.read_text())['rows']}
     parts = ('hear', 'take', 'simulate', 'rig events', 'pack', 'publish', 'record', 'statistics')
     assert all(found[part] > 0.0 for part in parts)

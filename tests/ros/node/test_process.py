@@ -15,6 +15,7 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag
 from stickslip_sim.ros.node.parameters import cores_of
 from stickslip_sim.scene.load import parse_scene
+from tests.support.axis_here import axis_here
 from tests.support.busy_machine import judged_by_time
 from tests.support.forked_programs import ended_at_once
 from tests.support.node_processes import assert_clean, recording_into, running
@@ -26,15 +27,15 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 
 def test_a_smooth_law_changes_while_the_axis_moves() -> None:
-    with live_axis('scene:=stribeck') as (_, axis):
+    with axis_here('scene:=stribeck', 'time.mode:=lockstep') as axis:
         assert axis.values('friction.kinetic.tolerance')[0].double_value == 1e-4
         answer = axis.set_parameters(friction__kinetic__tolerance=1e-9)
         assert not answer.successful
         assert 'fits' in answer.reason
         assert not axis.set_parameters(friction__kinetic__law='exponential').successful
+        axis.step(100)
         assert axis.set_parameters(friction__kinetic__initial=0.1, friction__kinetic__viscous=0.2).successful
-        now = axis.now()
-        stop = axis.next('mode_event', lambda event: event.kind == EventKind.STICK and event.time > now)
+        stop = next(event for event in axis.step(5000).events if event.kind == EventKind.STICK)
         assert stop.friction_force == pytest.approx(0.1 * 3432.3275, rel=1e-12)
 
 
@@ -84,19 +85,20 @@ class TestSignals:
 
     def test_killed(self, tmp_path: Path) -> None:
         folder = tmp_path / 'run'
-        with live_axis(*recording_into(folder)) as (process, axis), judged_by_time(0.5, process.waits):
-            axis.next('slider_state', lambda state: state.step > 2500)
+        with live_axis('time.rate:=200.0', *recording_into(folder)) as (process, axis), \
+                judged_by_time(0.5, process.waits):
+            axis.next('slider_state', lambda state: state.step > 500)
             process.kill()
             last = axis.latest('slider_state').step
             with pytest.warns(RecordingWarning, match='no end'):
                 run = open_bag(folder)
             steps = run.columns('/slider_state')['step']
-            assert last - 1000 < steps[-1] <= last + 1000
+            assert last - 200 < steps[-1] <= last + 200
         assert not run.is_complete
         assert list(steps) == list(range(len(steps)))
 
     def test_stopped_for_a_while(self) -> None:
-        with live_axis() as (process, axis), judged_by_time(0.5, process.waits):
+        with live_axis('time.rate:=200.0') as (process, axis), judged_by_time(0.5, process.waits):
             reports = len(axis.heard['timing'])
             process.send(signal.SIGSTOP)
             time.sleep(1.0)

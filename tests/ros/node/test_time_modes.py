@@ -31,7 +31,7 @@ from stickslip_sim.scene import Scene
 from tests.support.axis_here import axis_here
 from tests.support.busy_machine import judged_by_time
 from tests.support.node_processes import NodeProcess, recording_into
-from tests.support.rigs import FIELDS, assert_same_states, made_again, run
+from tests.support.rigs import FIELDS, assert_same_states, made_again
 from tests.support.ros_nodes import Client, live_axis, nanoseconds
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE, wait_for
@@ -138,15 +138,6 @@ class TestTheSameRun:
             del each['root_iterations']    # they depend on where the steps end
         assert sum(results['events'].values()) > 4_000
         assert results == offline
-
-    def test_free_by_the_profile_of_the_scene(self, tmp_path: Path) -> None:
-        scene = load_scene('positioning', {'faults.ids': ['dry'], 'faults.kinds': ['friction_scale'],
-                                           'faults.starts': [1.0], 'faults.durations': [2.0], 'faults.values': [1.6]})
-        with node_of(scene, tmp_path, 'free', 'free_run') as (process, axis), stalls(process):
-            axis.next('slider_state', lambda state: state.time > 4.0)
-        free = open_bag(tmp_path / 'free')
-        assert free.receipt['dropped_messages'] == 0
-        assert_same_states(free, run(scene.make_rig(), free.counts['/slider_state']))
 
     def test_free_with_commands_that_come_when_they_come(self, tmp_path: Path) -> None:
         scene = load_scene('paper_fig8', RICH)
