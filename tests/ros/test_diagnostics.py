@@ -23,8 +23,16 @@ from stickslip_sim.ros.health_node import health_of
 from stickslip_sim.ros.node.clock import ClockIn
 from stickslip_sim.ros.node.graph_monitor import PublisherWatch
 from tests.support.axis_here import axis_here
-from tests.support.forked_programs import ended_at_once, refusal_of, ros_args
-from tests.support.node_processes import attentive, executable, recording_into, running, with_small_files
+from tests.support.node_processes import (
+    attentive,
+    ended_at_once,
+    executable,
+    recording_into,
+    refusal_of,
+    ros_args,
+    running,
+    with_small_files,
+)
 from tests.support.ros2_control_client import THRESHOLD, Rule, always, hardware_interface, near_is_silent
 from tests.support.ros_nodes import Client, client, live_axis, nanoseconds
 from tests.support.waiting import wait_for

@@ -18,7 +18,7 @@ from stickslip_sim.ros.programs import GivenParameters, NodeParameters
 from stickslip_sim.scene import scene_from_values, scene_names
 from stickslip_sim.scene.ros_yaml import plain_value
 from tests.support.axis_here import axis_here
-from tests.support.forked_programs import refusal_of, ros_args
+from tests.support.node_processes import refusal_of, ros_args
 from tests.support.scene_files import HEAD, write
 
 pytestmark = pytest.mark.ros

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rclpy.node import Node
@@ -19,12 +20,12 @@ from rclpy.node import Node
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, write_bag
 from stickslip_sim.ros import standstill
-from tests.support.forked_programs import ros_args
+from stickslip_sim.solvers import exact, with_advance
 from tests.support.node_processes import NodeProcess, assert_clean, recording_into, running
 from tests.support.recorded_runs import FACTS, samples
 from tests.support.ros_nodes import client, live_axis
 from tests.support.tool import restore_interrupt
-from tests.support.waiting import DEADLINE, wait_for
+from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.ros
 
@@ -55,6 +56,7 @@ IMPATIENT_CALL = """
 import sys
 from stickslip_sim.cli.main import run
 from stickslip_sim.ros import standstill
+from stickslip_sim.solvers import exact, with_advance
 
 standstill.GRACE = 3.0
 sys.exit(run(['call', 'pause']))
@@ -240,36 +242,27 @@ def test_a_defect_is_reported_and_shown_where(tmp_path: Path, monkeypatch: pytes
     assert shown[-2:] == ['ZeroDivisionError: first', 'second']
 
 
-CORRUPTED = """
-import sys
-from stickslip_sim.ros.executables import sim_node
-from stickslip_sim.solvers import exact, with_advance
+def with_a_run_that_contradicts_itself() -> None:
+    """For `prepare`."""
+    restore_interrupt()
+    done: list[bool] = []
 
-done = []
+    def corrupted(p: Any, s: Any, second: float, fraction: float, *arguments: Any) -> Any:
+        if not done and fraction > 0.005:
+            done.append(True)
+            s.stored_at_start += 1e3      # J that the run never had
+        return exact.advance(p, s, second, fraction, *arguments)
 
-def corrupted(p, s, second, fraction, *arguments):
-    if not done and fraction > 0.005:
-        done.append(True)
-        s.stored_at_start += 1e3      # J that the run never had
-    return exact.advance(p, s, second, fraction, *arguments)
-
-exact.SOLVER = with_advance(exact.SOLVER, corrupted)
-sys.exit(sim_node(sys.argv[1:]))
-"""
+    exact.SOLVER = with_advance(exact.SOLVER, corrupted)    # type: ignore[assignment]
 
 
 def test_a_run_that_contradicts_itself_stands_still(tmp_path: Path) -> None:
     """The check of runs finds it at the next event; the node says so and waits, and its bag is whole."""
-    words, errors = ros_args(*recording_into(tmp_path / 'run')), tmp_path / 'errors'
-    with errors.open('w') as out, subprocess.Popen([sys.executable, '-c', CORRUPTED, *words], stderr=out) as node:
-        try:
-            line = wait_for(lambda: [line for line in errors.read_text().splitlines() if 'stands still' in line],
-                            'its end')[0]
-            node.send_signal(signal.SIGINT)
-            assert node.wait(DEADLINE) == 0
-        finally:
-            node.kill()
-    assert 'the run violates its own motion or energy balance at t = ' in line
-    bag = open_bag(tmp_path / 'run')
-    assert bag.is_complete
-    assert len(list(bag.messages(['/slider_state']))) > 5
+    bag = tmp_path / 'run'
+    with running(*recording_into(bag), prepare=with_a_run_that_contradicts_itself) as process, client() as axis:
+        axis.status('solver', level=b'\2')
+        code, errors = process.end()
+    assert code == 0
+    assert 'stands still: the run violates its own motion or energy balance at t = ' in errors
+    assert open_bag(bag).is_complete
+    assert len(list(open_bag(bag).messages(['/slider_state']))) > 5

@@ -14,8 +14,7 @@ import pytest
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.inputs import load_scene
 from tests.support.axis_here import axis_here
-from tests.support.forked_programs import refusal_of
-from tests.support.node_processes import executable
+from tests.support.node_processes import executable, refusal_of
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 

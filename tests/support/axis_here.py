@@ -14,7 +14,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from stickslip_sim.ros.node.feed_axis import FeedAxis
 from stickslip_sim.ros.programs import GivenParameters
-from tests.support.forked_programs import ros_args
+from tests.support.node_processes import ros_args
 from tests.support.ros_nodes import Asker
 
 

@@ -7,7 +7,7 @@ import queue
 import signal
 import subprocess
 import threading
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +25,7 @@ from stickslip_sim.ros import lock_step
 from stickslip_sim.ros.controllers.controller_node import measurement
 from stickslip_sim.ros.node.joints import JointNames
 from stickslip_sim.scene.values import scene_text
-from tests.support.forked_programs import ForkedProgram, refusal_of
-from tests.support.node_processes import assert_clean, executable, running
+from tests.support.node_processes import NodeProcess, assert_clean, executable, refusal_of, running
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client, live_axis
 from tests.support.tool import Capture, answered
@@ -75,27 +74,29 @@ OWN = str(ROOT / 'tests/support/own_controllers.py')
     (('--controller', f'{OWN}:Cascade', '--setpoint', 'move.csv'), '--duration is missing'),
 ])
 def test_a_controller_of_the_user_that_is_refused(words: tuple[str, ...], reported: str) -> None:
-    process = ForkedProgram('controller_node', *words)
-    _, errors = process.communicate(DEADLINE)
-    line, = errors.splitlines()
-    assert (process.poll(), line.startswith('controller_node: ')) == (2, True)
-    assert reported in line
+    assert reported in refusal_of('controller_node', options=words)
+
+
+def controlled(folder: Path, text: str, **options: Any) -> AbstractContextManager[NodeProcess]:
+    """Run a controller of a text in which it is `mine`."""
+    (folder / 'mine.py').write_text(text)
+    return running(program='controller_node', options=('--controller', f'{folder}/mine.py:mine'), folder=folder,
+                   **options)
 
 
 def test_one_that_fails_in_real_time_stops_the_drive(tmp_path: Path) -> None:
     """Though no measurement comes any more: it is asked with each step, and says so."""
-    (tmp_path / 'mine.py').write_text("""def fails(t, measured):
+    text = """def mine(t, measured):
     if measured.is_lost:
         raise RuntimeError('lost')
     return 0.002
-""")
-    with live_axis(*BENCH) as (_, axis):
-        process = ForkedProgram('controller_node', '--controller', f'{tmp_path}/mine.py:fails')
+"""
+    with live_axis(*BENCH) as (_, axis), controlled(tmp_path, text) as process:
         axis.next('slider_state', lambda state: state.drive_velocity == 0.002)
         assert axis.call(InjectFault, 'inject_fault', kind='encoder_dropout', duration=10.0, value=1.0).success
-        _, errors = process.communicate(DEADLINE)
-        assert process.poll() == 2
-        assert 'controller_node: fails raised RuntimeError: lost (mine.py, line 3), asked after step ' in errors
+        code, errors = process.wait()
+        assert code == 2
+        assert 'controller_node: mine raised RuntimeError: lost (mine.py, line 3), asked after step ' in errors
         axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
 
 
@@ -106,28 +107,18 @@ def impatient() -> None:
 
 def test_a_killed_axis_ends_its_controller_in_lock_step(tmp_path: Path) -> None:
     """It asks on for a while, since a network may lose an answer, then says so and ends."""
-    (tmp_path / 'mine.py').write_text("""import os
-def mine(t, measured):
-    open('asked', 'w').close()
-    return 0.002
-""")
-    with running(*BENCH, 'time.mode:=lockstep') as axis:
-        process = ForkedProgram('controller_node', '--controller', f'{tmp_path}/mine.py:mine', folder=tmp_path,
-                                prepare=impatient)
+    text = "def mine(t, measured):\n    open('asked', 'w').close()\n    return 0.002\n"
+    with running(*BENCH, 'time.mode:=lockstep') as axis, controlled(tmp_path, text, prepare=impatient) as process:
         wait_for((tmp_path / 'asked').exists, 'the first step')
         axis.end(signal.SIGKILL)
-        _, errors = process.communicate(DEADLINE)
-    assert (process.poll(), errors.splitlines()[-1]) == (
-        1, 'controller_node: /feed_axis no longer answers: has it ended?')
+        code, errors = process.wait()
+    assert (code, errors.splitlines()[-1]) == (1, 'controller_node: /feed_axis no longer answers: has it ended?')
 
 
 def test_the_watchdog_stops_the_drive_of_a_killed_controller(tmp_path: Path) -> None:
-    (tmp_path / 'mine.py').write_text('def mine(t, measured):\n    return 0.002\n')
     with live_axis(*BENCH, 'command.timeout:=0.2', 'command.on_timeout:=ramp_to_zero') as (_, axis):
-        process = ForkedProgram('controller_node', '--controller', f'{tmp_path}/mine.py:mine')
-        axis.next('slider_state', lambda state: state.drive_velocity == 0.002)
-        process.kill()
-        process.communicate()
+        with controlled(tmp_path, 'def mine(t, measured):\n    return 0.002\n'):
+            axis.next('slider_state', lambda state: state.drive_velocity == 0.002)
         axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
 
 

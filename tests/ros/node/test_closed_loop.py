@@ -17,11 +17,10 @@ from stickslip_sim.check.verification import verify
 from stickslip_sim.recording import RecordedRun, read_run
 from tests.support.own_controllers import Cascade
 from tests.support.repository import ROOT
-from tests.support.waiting import DEADLINE
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
-from tests.support.forked_programs import ForkedProgram  # noqa: E402
+from tests.support.node_processes import ended_at_once  # noqa: E402
 from tests.support.ros_nodes import live_axis  # noqa: E402
 
 Changes = Mapping[str, Any]
@@ -74,11 +73,10 @@ def recorded(run: RecordedRun, topic: Topic, is_decoded: bool = False) -> list[t
 def drive(case: Case, setpoint: Path) -> None:
     """Let `controller_node` drive the axis from a reset on."""
     own = ROOT / 'tests/support/own_controllers.py'
-    process = ForkedProgram(
-        'controller_node', '--controller', f'{own}:Cascade', '--gain', f'pushes={case.pushes}', '--rate',
-        f'{case.rate:g}', f'--setpoint={setpoint}', f'--duration={DURATION}')
-    _, errors = process.communicate(DEADLINE)
-    assert process.poll() == 0, errors
+    options = ('--controller', f'{own}:Cascade', '--gain', f'pushes={case.pushes}', '--rate', f'{case.rate:g}',
+               f'--setpoint={setpoint}', f'--duration={DURATION}')
+    code, errors = ended_at_once('controller_node', options=options)
+    assert code == 0, errors
     assert f'connected to /feed_axis: {case.scene}, ' in errors
     assert errors.splitlines()[-1].endswith(f't = {DURATION:g} s')
 

@@ -17,8 +17,7 @@ from stickslip_sim.ros.node.parameters import cores_of
 from stickslip_sim.scene.load import parse_scene
 from tests.support.axis_here import axis_here
 from tests.support.busy_machine import judged_by_time
-from tests.support.forked_programs import ended_at_once
-from tests.support.node_processes import assert_clean, recording_into, running
+from tests.support.node_processes import assert_clean, ended_at_once, recording_into, running
 from tests.support.rights import name_of, needs_fifo, policies, start_without_rights
 from tests.support.ros_nodes import live_axis
 from tests.support.waiting import wait_for

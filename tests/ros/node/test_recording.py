@@ -2,27 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Recordings of the node: where they may go, what they hold, and what a full disk does."""
 
-import math
-import subprocess
+import os
+import signal
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
 from rclpy.serialization import serialize_message
 
-from stickslip_msgs.srv import Step
 from stickslip_sim.check.verification import verify
 from stickslip_sim.core.errors import RecordingWarning
-from stickslip_sim.core.types import Event, EventKind
+from stickslip_sim.core.types import EventKind, Sample
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.recording import RecordedRun, open_bag, read_run
-from stickslip_sim.runs import simulate
+from stickslip_sim.recording import open_bag, open_run, read_run, recordings
+from stickslip_sim.ros.node.publishers import Publishers
 from stickslip_sim.runs.run import LOAD_COLUMN
-from stickslip_sim.scene import changed
+from tests.support.axis_here import axis_here
 from tests.support.node_processes import attentive, recording_into, running, with_small_files
 from tests.support.ros_nodes import client, live_axis
-from tests.support.waiting import DEADLINE, wait_for
+from tests.support.tool import restore_interrupt
+from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -32,7 +33,7 @@ CHANGES: dict[str, Any] = {
     'friction.kinetic.backward.coefficients': [0.1, 0.03], 'normal_load.course': 'steps',
     'normal_load.times': [0.0, 0.7, 1.6], 'normal_load.forces': [0.0, 500.0, -800.0],
 }
-SPEEDS, STEPS, RATE = (0.004, -0.01, 0.006), 800, 1000.0
+SPEEDS, STEPS = (0.004, -0.01, 0.006), 800
 RANGES = {1: (0.12, 0.24), -1: (0.1, 0.15)}    # of the static coefficient, by direction
 
 
@@ -75,10 +76,11 @@ class TestPlace:
         assert {path.name for path in tmp_path.iterdir()} == {'runs'}
         assert len(list(runs.iterdir())) == 5
 
-    def test_a_scene_whose_name_is_a_path(self, tmp_path: Path) -> None:
+    def test_a_scene_whose_name_is_a_path(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         scene = tmp_path / 'scene.yaml'
         scene.write_text('/**:\n  ros__parameters: {scene: ../../up, axis: {mass: 300.0}, record: {enabled: true}}\n')
-        with live_axis('--params-file', str(scene), folder=tmp_path):
+        monkeypatch.chdir(tmp_path)
+        with axis_here('--params-file', scene):
             pass
         (folder,) = (tmp_path / 'runs').iterdir()
         assert folder.name.startswith('.._.._up_')
@@ -108,12 +110,35 @@ class TestFullDisk:
         assert len(run.columns('/slider_state')['step']) > 100
 
 
+LAG = 'stamps lag by, s: '
+
+
+def with_a_slow_disk() -> None:
+    """Let a node take half a second to open a bag, and end after 300 steps: for `prepare`."""
+    lags: list[int] = []
+
+    def slow_open_run(*given: Any) -> Any:
+        time.sleep(0.5)
+        return open_run(*given)
+
+    def sample(publishers: Publishers, _: int, state: Sample) -> None:
+        lags.append(time.time_ns() - publishers.start_ns - state.instant.nanoseconds)
+        if len(lags) == 300:
+            print(LAG, min(lags) * 1e-9, file=sys.stderr)
+            os.kill(os.getpid(), signal.SIGINT)
+
+    restore_interrupt()
+    recordings.open_run = slow_open_run    # type: ignore[assignment, attr-defined]
+    Publishers.sample = sample             # type: ignore[assignment, method-assign]
+
+
 class TestContent:
     def test_stamps_keep_to_the_clock_when_it_records_from_the_start(self, tmp_path: Path) -> None:
         """However long the bag takes to open."""
-        done = subprocess.run([sys.executable, '-m', 'tests.support.slow_bag', *recording_into(tmp_path / 'run')],
-                              capture_output=True, text=True, timeout=DEADLINE, check=True)
-        assert abs(float(done.stdout)) < 0.25, done.stderr
+        with running(*recording_into(tmp_path / 'run'), prepare=with_a_slow_disk) as process:
+            code, errors = process.wait()
+        assert code == 0, errors
+        assert abs(float(errors.partition(LAG)[2].split()[0])) < 0.25
 
     def test_the_names_that_the_topics_have_and_the_settings_of_the_solver(self, tmp_path: Path) -> None:
         """As those of `ros2 bag record`; readers go by the types."""
@@ -160,47 +185,19 @@ class TestContent:
         assert command.velocity == 0.003      # the one in force when it began
 
 
-@pytest.fixture(scope='class')
-def recorded(tmp_path_factory: pytest.TempPathFactory) -> RecordedRun:
-    """The run of a node that was ordered by messages to go forwards, backwards, and forwards again."""
-    folder = tmp_path_factory.mktemp('node')
-    (folder / 'scene.yaml').write_text(load_scene('paper_fig8', CHANGES).text, encoding='utf-8')
-    words = ('time.mode:=lockstep', '--params-file', str(folder / 'scene.yaml'), *recording_into(folder / 'runs'))
-    with live_axis(*words, folder=folder) as (_, axis):
-        bag = Path(axis.latest('run_info').bag_path)
+def test_a_load_and_a_friction_of_each_direction_are_recorded_and_made_again(tmp_path: Path) -> None:
+    """A node that is ordered to go forwards, backwards, and forwards again."""
+    (tmp_path / 'scene.yaml').write_text(load_scene('paper_fig8', CHANGES).text, encoding='utf-8')
+    with axis_here('--params-file', tmp_path / 'scene.yaml', *recording_into(tmp_path / 'run')) as axis:
         for speed in SPEEDS:
-            assert axis.call(Step, 'step', steps=STEPS, velocity=speed, force=math.nan).success
-    return read_run(bag)
-
-
-class TestLoadAndDirections:
-    """A scene with a normal load that changes in time and friction that differs backwards: in a node, and offline."""
-
-    def test_it_has_the_load_and_the_friction_of_the_direction(self, recorded: RecordedRun) -> None:
-        weight = 3432.3275
-        assert recorded.samples[LOAD_COLUMN][[699, 700, 1600]].tolist() == [weight, weight + 500.0, weight - 800.0]
-        away = [event for event in recorded.events if event.kind == EventKind.BREAKAWAY]
-        assert {event.direction for event in away} == {1, -1}
-        for event in away:
-            low, high = RANGES[event.direction]
-            assert low <= event.static_coefficient <= high
-        verdict = verify(recorded)
-        assert verdict.difference is None, verdict
-        assert (verdict.steps, verdict.events, verdict.missing) == (
-            1 + len(SPEEDS) * STEPS, len(recorded.events), 0)
-
-    def test_it_is_the_run_of_a_scene_whose_drive_goes_so(self, recorded: RecordedRun) -> None:
-        duration = STEPS / RATE
-        drive = {'drive.course': 'steps', 'drive.times': [k * duration for k in range(len(SPEEDS))],
-                 'drive.velocities': list(SPEEDS)}
-        scene = changed(load_scene('paper_fig8', CHANGES), drive)
-        offline = simulate(scene, len(SPEEDS) * duration, 1.0 / RATE)
-        published = [event for event in offline.events if event.kind != EventKind.KNOT]
-        assert [kind_of(event) for event in recorded.events] == [kind_of(event) for event in published]
-        assert [event.time for event in recorded.events] == pytest.approx([event.time for event in published],
-                                                                          rel=1e-12)
-        assert recorded.samples['position'] == pytest.approx(offline.samples['position'], rel=1e-12, abs=1e-15)
-
-
-def kind_of(event: Event) -> tuple[int, int, int]:
-    return event.kind, event.mode, event.direction
+            axis.step(STEPS, speed)
+    recorded, weight = read_run(tmp_path / 'run'), 3432.3275
+    assert recorded.samples[LOAD_COLUMN][[699, 700, 1600]].tolist() == [weight, weight + 500.0, weight - 800.0]
+    away = [event for event in recorded.events if event.kind == EventKind.BREAKAWAY]
+    assert {event.direction for event in away} == {1, -1}
+    for event in away:
+        low, high = RANGES[event.direction]
+        assert low <= event.static_coefficient <= high
+    verdict = verify(recorded)
+    assert verdict.difference is None, verdict
+    assert (verdict.steps, verdict.events, verdict.missing) == (1 + len(SPEEDS) * STEPS, len(recorded.events), 0)

@@ -24,8 +24,7 @@ from stickslip_sim.recording import open_bag, open_run, schema, write_bag
 from stickslip_sim.ros.node.endpoints import message_type, qos
 from stickslip_sim.ros.replay.span import REPLAY_PARAMETERS
 from tests.support.busy_machine import judged_by_time
-from tests.support.forked_programs import ended_at_once, refusal_of
-from tests.support.node_processes import NodeProcess, assert_clean, running
+from tests.support.node_processes import NodeProcess, assert_clean, ended_at_once, refusal_of, running
 from tests.support.recorded_runs import FACTS, damage, events, samples
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
