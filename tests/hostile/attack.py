@@ -58,7 +58,10 @@ class Counts:
 
 def one_round(seed: str, tally: Counts, names: Sequence[str], count: int = PER_ROUND,
               share: float = REFERENCE_SHARE) -> list[Found]:
-    """Make up `count` scenes with each generator and judge them; the same seed makes the same scenes."""
+    """Make up `count` scenes with each generator and judge them; the same seed makes the same scenes.
+
+    `share` of them is judged by the reference.  With 0 no slow judge is asked: the brute force only where `guards` are.
+    """
     made: list[tuple[str, str, Case, Run]] = []
     unsound: list[Found] = []
     for name in names:
@@ -99,7 +102,7 @@ def judge_again(case: Case, tag: str, reference_too: bool = True) -> list[tuple[
 def _others(done: Run, tag: str, share: float, tally: Counts, name: str) -> Iterator[tuple[str, str]]:
     rng = random.Random(tag + '/judges')
     judges: dict[str, Callable[[], object]] = {judge: partial(work, done, rng) for judge, work in JUDGES.items()}
-    if done.parts.load is not None or done.parts.axis.friction.static.scatter is not None:
+    if done.parts.load is not None or (done.parts.axis.friction.static.scatter is not None and share > 0.0):
         judges['brute'] = partial(brute.judge, done)
     if random.Random(tag + '/reference').random() < share:
         judges['reference'] = partial(reference.judge, done)
