@@ -60,24 +60,6 @@ def test_the_balance_of_an_hour_closes(name: str) -> None:
     assert energy_of(simulator).friction_loss > 0.0
 
 
-@pytest.mark.parametrize('name', SCENES)
-def test_the_balance_of_every_cycle_closes_and_friction_never_gives(name: str) -> None:
-    scene = load_scene(name)
-    simulator = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
-    before = energy_of(simulator)
-    for event in simulator.advance(Instant(20.0, 0.0)):
-        twin = Simulator(scene.axis, scene.initial, scene.drive, scene.force, accounting=True)
-        if event.time > 6.0:
-            break
-        twin.advance(event.instant)
-        now = energy_of(twin)
-        change = EnergyBalance(*(b - a for a, b in zip(before, now)))
-        assert abs(now.residual - before.residual) <= 1e-12 * max(change.throughput, now.stored)
-        rounding = 1e-15 * now.throughput   # of the two sums
-        assert min(change.friction_loss, change.drive_damper_loss, change.contact_damper_loss) >= -rounding
-        before = now
-
-
 def test_random_axes() -> None:
     losses = 0
     for seed in range(200):
@@ -118,22 +100,6 @@ def test_near_critical_damping_the_balance_closes(critical: float) -> None:
         assert energy_of(simulator).relative_residual <= 1e-14
 
 
-def test_reading_does_not_move_and_the_motion_is_the_same_without_an_account() -> None:
-    for seed in range(40):
-        plain, read = random_run(seed), random_run(seed)
-        bare = Simulator(plain.axis, InitialState(), constant(0.01), constant(0.0))
-        same = Simulator(plain.axis, InitialState(), constant(0.01), constant(0.0), accounting=True)
-        assert bare.advance(Instant(2.0, 0.0)) == same.advance(Instant(2.0, 0.0))
-        assert bare.sample() == same.sample()
-        assert bare.energy is None
-        events = []
-        for k in range(1, 101):
-            events += read.advance(instant(0.02 * k))
-            assert energy_of(read).relative_residual <= 1e-11
-        assert plain.advance(Instant(2.0, 0.0)) == events
-        assert plain.energy == read.energy
-
-
 def test_a_reset_counts_anew() -> None:
     simulator = accounted(paper_axis(COMPLIANT), constant(0.002))
     simulator.advance(Instant(5.0, 0.0))
@@ -142,19 +108,6 @@ def test_a_reset_counts_anew() -> None:
     assert set(energy_of(simulator)) == {0.0}
     simulator.advance(Instant(5.0, 0.0))
     assert simulator.energy == first
-
-
-def test_plain_python_keeps_the_same_account(in_a_process: Program) -> None:
-    program = '''
-from stickslip_sim.core.input_profile import constant
-from stickslip_sim.simulation.simulator import Simulator
-from stickslip_sim.axis import InitialState
-from stickslip_sim.core.types import Instant
-from tests.support.axes import COMPLIANT, paper_axis
-simulator = Simulator(paper_axis(COMPLIANT), InitialState(), constant(0.002), constant(0.0), accounting=True)
-print(simulator.advance(Instant(4.0, 0.0)), simulator.sample(), simulator.energy)
-'''
-    assert in_a_process(program, compiled=True) == in_a_process(program, compiled=False)
 
 
 WRONG = """

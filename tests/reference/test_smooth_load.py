@@ -4,16 +4,15 @@
 
 import math
 from dataclasses import replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
+from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
 from stickslip_sim.core.input_profile import InputProfile, Sinusoid, constant, ramp, steps, table
-from stickslip_sim.core.types import Event, EventKind, Mode
+from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.reference import ReferenceRun, simulate
 from tests.support.axes import COMPLIANT, RIGID, of_kind, paper_axis
@@ -68,58 +67,6 @@ def pressed(load: InputProfile, normal: float, t: mpf) -> mpf:
     return total
 
 
-@pytest.mark.parametrize('load', [FAST, SUM], ids=['sine', 'sum'])
-@pytest.mark.parametrize('axis', [paper_axis(RIGID), paper_axis(COMPLIANT), paper_axis(RIGID, branches=False),
-                                  paper_axis(COMPLIANT, branches=False)],
-                         ids=['rigid', 'compliant', 'rigid, one branch', 'compliant, one branch'])
-def test_every_mode_is_what_dop853_integrates(axis: Axis, load: InputProfile) -> None:
-    run = run_of(axis, load, 1.7)
-    assert len(run.events) >= 6
-    for before, after in pairwise(run.events):
-        end = integrated(axis, before, after.time, run.events, load)
-        assert end == pytest.approx([after.position, after.velocity], rel=1e-9, abs=1e-11), before
-
-
-def integrated(axis: Axis, event: Event, until: float, events: list[Event], load: InputProfile) -> list[float]:
-    """Integrate m ẍ = F_d + F_e − F in the mode that an event begins."""
-    kinetic, excess = axis.friction.kinetic, axis.friction.excess
-    leaps = [e for e in events if e.kind == EventKind.BREAKAWAY and e.time <= event.time]
-    raised = 0.0
-    if excess and leaps and leaps[-1].velocity * leaps[-1].direction >= 0.0 and leaps[-1].rest_time > 0.0:
-        speed = abs(leaps[-1].velocity)
-        raised = (leaps[-1].static_coefficient - kinetic.coefficient(speed)) / excess.fraction(speed)
-
-    def motion(t: float, y: np.ndarray[Any, Any]) -> list[float]:
-        x, u, deflection = y
-        normal = axis.normal_force + load.value_at(float(t))
-        pull = axis.drive_stiffness * (0.002 * t - x) + axis.drive_damping * (0.002 - u)
-        if event.mode == Mode.COASTING or (event.mode == Mode.STICK and isinstance(axis.contact, RigidContact)):
-            return [u, 0.0, 0.0]
-        if event.mode == Mode.STICK:
-            assert isinstance(axis.contact, CompliantContact)
-            return [u, (pull - axis.contact.stiffness * deflection - axis.contact.damping * u) / axis.mass, u]
-        friction = kinetic.coefficient(0.0 if event.mode == Mode.YIELDING else abs(u))
-        if event.mode == Mode.ACCELERATING and excess:
-            friction += raised * excess.fraction(abs(u))
-        return [u, (pull - event.direction * normal * friction) / axis.mass, 0.0]
-
-    deflection = event.friction_force / axis.contact.stiffness if isinstance(axis.contact, CompliantContact) else 0.0
-    if event.kind == EventKind.STICK and event.velocity and isinstance(axis.contact, CompliantContact):
-        deflection -= axis.contact.damping * event.velocity / axis.contact.stiffness   # it yielded
-    state = [event.position, event.velocity, deflection]
-    borders = sorted({event.time, until, *(t for t in breaks(load, until) if event.time < t < until)})
-    for begin, end in pairwise(borders):
-        state = solve_ivp(motion, (begin, end), state, method='DOP853', rtol=1e-12, atol=1e-14).y[:, -1].tolist()
-    return state[:2]
-
-
-def breaks(load: InputProfile, until: float) -> list[float]:
-    """Return where its pieces begin."""
-    if load.period == NEVER:
-        return list(load.starts)
-    return [turn * load.period + start for turn in range(int(until / load.period) + 1) for start in load.starts]
-
-
 def test_more_digits_change_none_of_those_promised() -> None:
     """The remainder of the series is below the working precision: 20 digits more leave 30 as they are."""
     axis = paper_axis(COMPLIANT)
@@ -130,13 +77,6 @@ def test_more_digits_change_none_of_those_promised() -> None:
         for a, b in zip(few, many):
             assert abs(a.time - b.time) < mpf(10) ** -30
             assert abs(a.velocity - b.velocity) < mpf(10) ** -30
-
-
-def test_no_break_away_of_the_trial_is_missed() -> None:
-    run = run_of(paper_axis(RIGID), SINE, 8.0)
-    leaps = of_kind(run.events, EventKind.BREAKAWAY)
-    assert (len(run.events), len(leaps)) == (137, 31)
-    assert leaps[5].time == pytest.approx(1.81893, abs=1e-5)
 
 
 def test_a_tie_is_decided_with_the_rate_of_the_normal_force() -> None:

@@ -31,16 +31,19 @@ for overrides, name in product({[{}, *STEPS, LOAD, SCATTER]!r}, scene_names()):
 '''
 RANDOM = '''
 import random
-from tests.support.axes import random_axis, run_events
-for seed in range(25):
+from tests.support.axes import make, instant, random_axis
+from tests.support.forced_profiles import random_profiles
+for seed in range(12):
     rng = random.Random(seed)
     axis = random_axis(rng)
-    printed(run_events(axis, rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 3.0))
+    for inputs in ((rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 0.0), random_profiles(rng, axis)):
+        simulator = make(axis, *inputs)
+        printed([*simulator.advance(instant(1.5)), simulator.sample()])
 '''
 
 
 def test_compiled_and_plain_python_agree_bit_by_bit(in_a_process: Program) -> None:
-    """Scenes by the exact solver, by fixed steps and under a load, and axes at random."""
+    """Scenes by the exact solver, by fixed steps and under a load, and axes at random, with sinusoids too."""
     program = ('from stickslip_sim.core.hot_path import hot_path\nassert hot_path() == WORDS\n'
                f'{PRINTED}{SCENES}{RANDOM}')
     compiled = in_a_process(program.replace('WORDS', '"compiled"'), compiled=True)

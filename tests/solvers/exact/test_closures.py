@@ -23,7 +23,7 @@ from stickslip_sim.recording import read_run
 from stickslip_sim.reference import simulate as simulate_reference
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step
-from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, paper_axis, random_axis, run_events
+from tests.support.axes import COMPLIANT, RIGID, Contact, instant, paper_axis, random_axis, run_events
 from tests.support.tool import Capture, answered
 from tests.support.verify_tool import verified
 
@@ -97,28 +97,6 @@ def test_random_axes_have_the_events_of_the_reference(closure: str, seed: int) -
     energy = simulator.energy
     assert energy is not None
     assert energy.relative_residual < 1e-11
-
-
-@pytest.mark.parametrize('closure', CLOSURES)
-def test_under_sinusoids_too(closure: str) -> None:
-    axis = closed(paper_axis(COMPLIANT), closure)
-    drive, force = replace(constant(FEED), sinusoids=SINES[:1]), replace(constant(0.0), sinusoids=SINES[1:])
-    simulator = Simulator(axis, START, drive, force, accounting=True)
-    found = simulator.advance(instant(1.2))
-    simulator.require_sound()
-    assert len(found) > 10
-    agree(found, axis, drive, force, 1.2, 1e-11)
-
-
-@pytest.mark.parametrize('closure', CLOSURES)
-def test_a_run_in_parts_is_the_same_to_the_last_bit(closure: str) -> None:
-    axis = closed(paper_axis(COMPLIANT), closure)
-    for force in (constant(0.0), replace(constant(0.0), sinusoids=SINES[1:])):
-        whole = make(axis, FEED, force).advance(instant(SHORT))
-        parted, rng = make(axis, FEED, force), random.Random(1)
-        found = [event for time in sorted(rng.uniform(0.0, SHORT) for _ in range(300))
-                 for event in parted.advance(instant(time))]
-        assert found + parted.advance(instant(SHORT)) == whole
 
 
 @pytest.mark.parametrize('closure', CLOSURES)

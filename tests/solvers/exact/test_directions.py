@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Friction that depends on the direction: the reference, mirror images, splits, energy, and every solver."""
 
-import json
 import math
 import random
 from dataclasses import replace
@@ -51,12 +50,6 @@ def mirrored(profile: InputProfile) -> InputProfile:
                         profile.period, tuple(one._replace(amplitude=-one.amplitude) for one in profile.sinusoids))
 
 
-def mirror(event: Event) -> Event:
-    return event._replace(direction=-event.direction, position=-event.position, velocity=-event.velocity,
-                          drive_position=-event.drive_position, drive_force=-event.drive_force,
-                          friction_force=-event.friction_force)
-
-
 @pytest.mark.parametrize('seed', range(6))
 def test_events_are_those_of_the_reference(seed: int) -> None:
     reference = pytest.importorskip('stickslip_sim.reference')
@@ -99,19 +92,6 @@ def test_a_law_that_is_convex_backwards_alone_lets_go_before_it_has_risen() -> N
 
 
 @pytest.mark.parametrize('seed', range(10))
-def test_a_mirrored_scene_has_mirrored_events(seed: int) -> None:
-    rng = random.Random(seed)
-    axis = random_sides(rng)
-    drive, force = random_profiles(rng)
-    initial = start_of(rng, axis)
-    image = replace(initial, velocity=-initial.velocity, stretch=-initial.stretch)
-    turned = replace(axis, friction=axis.friction.mirrored)
-    seen = make(turned, mirrored(drive), mirrored(force), image).advance(instant(5.0))
-    wanted = make(axis, drive, force, initial).advance(instant(5.0))
-    assert seen == [mirror(event) for event in wanted]
-
-
-@pytest.mark.parametrize('seed', range(10))
 def test_the_same_friction_given_twice_changes_no_event(seed: int) -> None:
     rng = random.Random(seed)
     axis = random_axis(rng)
@@ -121,27 +101,6 @@ def test_the_same_friction_given_twice_changes_no_event(seed: int) -> None:
     wanted = make(axis, drive, force).advance(instant(5.0))
     assert [(e.kind, e.mode, e.direction) for e in seen] == [(e.kind, e.mode, e.direction) for e in wanted]
     assert [e.time for e in seen] == pytest.approx([e.time for e in wanted], rel=1e-12, abs=1e-12)
-
-
-@pytest.mark.parametrize('seed', range(10))
-def test_splits_and_checkpoints_change_no_bit_and_energy_closes(seed: int) -> None:
-    rng = random.Random(seed)
-    axis = random_sides(rng)
-    drive, force = random_profiles(rng)
-    whole, parts = (Simulator(axis, InitialState(), drive, force, accounting=True) for _ in range(2))
-    wanted = whole.advance(instant(4.0))
-    seen: list[Event] = []
-    for time in sorted(rng.uniform(0.0, 4.0) for _ in range(8)):
-        seen += parts.advance(instant(time))
-        resumed = Simulator(axis, InitialState(), drive, force, accounting=True)
-        resumed.restore(json.loads(json.dumps(parts.checkpoint())), axis, drive, force)
-        parts = resumed
-    seen += parts.advance(instant(4.0))
-    assert seen == wanted
-    assert parts.sample() == whole.sample()
-    whole.require_sound()
-    assert whole.energy is not None
-    assert abs(whole.energy.residual) <= 1e-9 * max(whole.energy.throughput, 1e-9)
 
 
 def limits(friction: Friction, normal: float) -> tuple[float, float]:
@@ -249,14 +208,6 @@ def test_what_has_no_meaning_is_refused_by_its_name(changes: dict[str, object], 
     with pytest.raises(InputError) as refused:
         load_scene('paper_fig8', changes)
     assert text in str(refused.value)
-
-
-def test_both_ways_have_one_kind_of_law() -> None:
-    friction = paper_axis(RIGID).friction
-    with pytest.raises(InputError, match='the same law as forwards, exponential'):
-        replace(friction, backward=replace(friction, static=StaticLaw(StaticLawKind.CONSTANT, 0.2, 0.2)))
-    with pytest.raises(InputError, match='in both directions or in none'):
-        replace(friction, backward=replace(friction, excess=None))
 
 
 def feeds(scene: Scene) -> list[float]:

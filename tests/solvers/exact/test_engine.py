@@ -9,11 +9,10 @@ from itertools import pairwise
 
 import pytest
 
-from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState
+from stickslip_sim.axis import InitialState
 from stickslip_sim.core.errors import SolverError
-from stickslip_sim.core.input_profile import InputProfile, ramp, steps, table
+from stickslip_sim.core.input_profile import InputProfile, ramp, steps
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode
-from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run_events
 
 
@@ -45,21 +44,6 @@ def test_an_event_has_happened_at_its_very_time() -> None:
     simulator = make(paper_axis(RIGID), 0.002)
     assert simulator.advance(Instant(event.second, math.nextafter(event.fraction, 0.0))) == []
     assert simulator.advance(event.instant) == [event]
-
-
-def test_state_is_continuous_and_forces_balance() -> None:
-    """m ẍ = F_d + F_e − F at every sample, and nothing jumps by more than its rate allows."""
-    axis = paper_axis(COMPLIANT)
-    simulator = make(axis, 0.005, steps('force', [0.0, 1.0, 1.2], [0.0, 400.0, -100.0]))
-    before = None
-    for k in range(1, 4001):
-        simulator.advance(Instant(k // 2000, (k % 2000) / 2000))
-        s = simulator.sample()
-        balance = s.drive_force + s.external_force - s.friction_force - 350.0 * s.acceleration
-        assert abs(balance) < 2e-11 * 824.0
-        if before is not None:
-            assert abs(s.position - before.position) <= 0.0005 * max(abs(s.velocity), abs(before.velocity)) * 1.5 + 1e-7
-        before = s
 
 
 def test_reverses_at_once_where_a_rigid_contact_cannot_hold() -> None:
@@ -94,29 +78,6 @@ def test_grazing_the_limit_is_neither_missed_nor_invented() -> None:
             events = run_events(held, drive, delay + 1.9 * t)
             broke = bool(events) and events[0].time < delay + 1.1 * t
             assert broke == (margin > 0.0), (margin, v, rate)
-
-
-@pytest.mark.parametrize('law', ['CONSTANT', 'EXPONENTIAL', 'KATO', 'HYPERBOLIC', 'LOGARITHMIC'])
-@pytest.mark.parametrize('exponent', [0.4, 1.0, 2.5])
-@pytest.mark.parametrize('contact', [RIGID, COMPLIANT])
-def test_break_away_of_every_static_law_is_on_the_limit(law: str, exponent: float, contact: Contact) -> None:
-    """At every break-away |F| = N mu_s(t⁻), and at no sampled instant of stick before it is |F| beyond the limit."""
-    axis = paper_axis(contact)
-    static = StaticLaw(StaticLawKind[law], 0.12, 0.24, 0.2, exponent)
-    axis = replace(axis, friction=replace(axis.friction, static=static))
-    drive = table('drive', [0.0, 1.0, 2.0, 4.0], [0.006, 0.002, -0.008, 0.004])
-    simulator = make(axis, drive, initial=InitialState(rest_time=0.3))
-    breaks, n = 0, axis.normal_force
-    for k in range(1, 4001):
-        for event in simulator.advance(Instant(k // 1000, (k % 1000) / 1000)):
-            if event.kind == EventKind.BREAKAWAY:
-                breaks += 1
-                assert event.static_coefficient == pytest.approx(static.coefficient(event.rest_time), rel=1e-14)
-                assert abs(event.friction_force) == pytest.approx(n * event.static_coefficient, rel=1e-14)
-        s = simulator.sample()
-        if s.mode == Mode.STICK:
-            assert abs(s.friction_force) <= n * static.coefficient(s.rest_time) * (1.0 + 1e-12)
-    assert breaks >= 2
 
 
 def test_parameters_may_change_on_the_way() -> None:
@@ -160,19 +121,6 @@ def test_without_friction_the_drive_takes_the_slider_along_either_way(sign: floa
         free = replace(paper_axis(contact), normal_force=0.0)
         events = run_events(free, ramp(0.0, sign * 0.01, 1.0), 1.0)
         assert (events[0].kind, events[0].direction) == (EventKind.BREAKAWAY, sign)
-
-
-def test_an_undamped_contact_breaks_away_on_the_other_side_too() -> None:
-    """After the arrest the contact swings back; nothing grows, and |F| never passes the limit."""
-    static = StaticLaw(StaticLawKind.CONSTANT, 0.12, 0.12)
-    axis = paper_axis(CompliantContact(5e6, 0.0))
-    axis = replace(axis, drive_damping=0.0, friction=replace(
-        axis.friction, static=static, kinetic=KineticTable((0.0,), (0.12,)), excess=None))
-    simulator = make(axis, 0.0, initial=InitialState(velocity=0.08))
-    for k in range(1, 1001):
-        simulator.advance(instant(k * 1e-4))
-        sample = simulator.sample()
-        assert abs(sample.friction_force) <= 0.12 * axis.normal_force * (1.0 + 1e-12)
 
 
 def test_changing_to_the_same_axis_changes_no_force() -> None:
@@ -245,15 +193,3 @@ def test_second_static_coefficients_of_the_model() -> None:
         events = run_events(paper_axis(contact, branches=branches), 0.002, 1.6)
         assert of_kind(events, EventKind.BREAKAWAY)[1].static_coefficient == pytest.approx(value, abs=0.5 * digit)
 
-
-def test_undamped_coulomb_cycle_in_closed_form() -> None:
-    """m u′ = c w − F with F_s = 824 N, F_k = 412 N, no damping, v = 5 mm/s: docs of the classical cycle."""
-    v, c, m = 0.005, 6e5, 350.0
-    friction = Friction(StaticLaw(StaticLawKind.CONSTANT, 0.24, 0.24), KineticTable((0.0,), (0.12,)), None)
-    events = run_events(Axis(m, c, 0.0, 412.0 / 0.12, RIGID, friction), v, 20.0)
-    omega, a = math.sqrt(c / m), 412.0 / (v * math.sqrt(c * m))
-    breaks, sticks = of_kind(events, EventKind.BREAKAWAY)[5:], of_kind(events, EventKind.STICK)[5:]
-    assert sticks[0].time - breaks[0].time == pytest.approx(2.0 / omega * (math.pi - math.atan(a)), rel=1e-12)
-    assert breaks[1].time - sticks[0].time == pytest.approx(2.0 * 412.0 / (c * v), rel=1e-12)
-    assert of_kind(events, EventKind.DECELERATE)[5].velocity == pytest.approx(v * (1 + math.hypot(1, a)), rel=1e-13)
-    assert sticks[0].time - breaks[0].time == pytest.approx(84.28583e-3, abs=5e-9)

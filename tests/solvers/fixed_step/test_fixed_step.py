@@ -15,7 +15,6 @@ from stickslip_sim.core.types import EventKind, Mode
 from stickslip_sim.friction import KineticTable, StaticLaw, StaticLawKind
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.solvers import adaptive, fixed_step
-from tests.conftest import Program
 from tests.support.axes import COMPLIANT, RIGID, instant, of_kind, paper_axis
 from tests.support.solver_runs import EXACT, firm, make, of_scene, order, simulate
 
@@ -130,18 +129,6 @@ class TestAskingChangesNothing:
                 drive_velocity=-here.drive_velocity, drive_force=-here.drive_force,
                 external_force=-here.external_force, friction_force=-here.friction_force,
                 contact_deflection=-here.contact_deflection)
-
-    def test_plain_python_gives_the_bits_of_the_machine_code(self, in_a_process: Program) -> None:
-        program = '''
-from stickslip_sim.inputs import load_scene
-from stickslip_sim.solvers import fixed_step
-from tests.support.solver_runs import of_scene
-for method in ('euler', 'rk4'):
-    for name in ('paper_fig7', 'paper_fig8', 'positioning'):
-        events, final = of_scene(fixed_step.solver(method, 0.0007), load_scene(name), 2.0)
-        print([tuple(map(float.hex, map(float, row))) for row in (*events, final)])
-'''
-        assert in_a_process(program, compiled=True) == in_a_process(program, compiled=False)
 
 
 class TestTheGrid:
