@@ -271,9 +271,8 @@ class TestRefusals:
     ])
     def test_limits(self, text: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
         path = limits_file(tmp_path, text)
-        line = refused(capsys, 'paper_fig7', '--duration', DURATION, '--limits', path, '--junit', tmp_path / 'c.xml')
-        for word in words:
-            assert word in line
+        refused(capsys, 'paper_fig7', '--duration', DURATION, '--limits', path, '--junit', tmp_path / 'c.xml',
+                words=words)
         assert [file.name for file in tmp_path.iterdir()] == ['limits.yaml']
 
     def test_limits_that_are_no_text(self, tmp_path: Path, capsys: Capture) -> None:
@@ -299,23 +298,7 @@ class TestRefusals:
     def test_wrong_use(self, arguments: list[str], words: list[str], fig8_bag: Path, tmp_path: Path,
                        capsys: Capture) -> None:
         given = [str(fig8_bag) if argument == 'BAG' else argument for argument in arguments]
-        line = refused(capsys, *given, '--limits', limits_file(tmp_path, LIMITS))
-        for word in words:
-            assert word in line
-
-    @pytest.mark.parametrize('content', [b'', b'no bag at all, but long enough to look like one'])
-    def test_no_bag(self, content: bytes, tmp_path: Path, capsys: Capture) -> None:
-        (tmp_path / 'x.mcap').write_bytes(content)
-        assert 'x.mcap' in refused(capsys, tmp_path / 'x.mcap', '--limits', limits_file(tmp_path, LIMITS))
-
-    def test_a_bag_of_another_thing(self, tmp_path: Path, capsys: Capture) -> None:
-        limits = limits_file(tmp_path, LIMITS)
-        BagWriter(tmp_path / 'other', [topics.DIAGNOSTICS, topics.TIMING], {}, {}).close()
-        line = refused(capsys, tmp_path / 'other', '--limits', limits)
-        assert 'no topic of type stickslip_msgs/msg/SliderState' in line
-        cells = [*topics.recorded_topics('/a'), *topics.recorded_topics('/b')]
-        BagWriter(tmp_path / 'two', [topic for topic in cells if topic is not topics.PARAMETER_EVENTS], {}, {}).close()
-        assert 'are both of type' in refused(capsys, tmp_path / 'two', '--limits', limits)
+        refused(capsys, *given, '--limits', limits_file(tmp_path, LIMITS), words=words)
 
     def test_a_bag_without_states(self, tmp_path: Path, capsys: Capture) -> None:
         BagWriter(tmp_path / 'empty', topics.recorded_topics(), {}, {}).close()

@@ -19,7 +19,7 @@ from stickslip_sim.recording.offline_bag import StepMessages
 from stickslip_sim.runs import simulate
 from tests.support.check_files import DURATION, LIMITS, checked, cut, limits_file, node_bag, refused
 from tests.support.repository import ROOT
-from tests.support.tool import Capture
+from tests.support.tool import Capture, done
 
 EXAMPLE = str(ROOT / 'examples' / 'limits.yaml')
 FAILING = LIMITS.replace('1}', '0}').replace('0.02', '0.01')
@@ -35,8 +35,7 @@ def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
 class TestOutcome:
     def test_passed(self, tmp_path: Path, capsys: Capture) -> None:
         limits = limits_file(tmp_path, LIMITS)
-        code, out, err = checked(capsys, 'paper_fig7', '--duration', DURATION, '--limits', limits)
-        assert (code, err) == (0, '')
+        out = done(capsys, 'check', 'paper_fig7', '--duration', DURATION, '--limits', limits)
         head, heads, *rows, verdict = out.splitlines()
         assert head == 'paper_fig7: 0 to 1.4 s, 1401 states, 5 transitions'
         assert heads.split() == ['limit', 'measured', 'at', 'most', 'margin']
@@ -106,8 +105,7 @@ class TestOutcome:
 
     def test_the_example_and_every_figure_are_in_the_documentation(self, capsys: Capture) -> None:
         text = (ROOT / 'docs' / 'check.md').read_text()
-        code, out, _ = checked(capsys, 'positioning', '--duration', '2', '--limits', EXAMPLE)
-        assert code == 0
+        out = done(capsys, 'check', 'positioning', '--duration', '2', '--limits', EXAMPLE)
         assert out in text
         assert Path(EXAMPLE).read_text() in text
         of_iso = {*CIRCLE_KINDS, *PositioningFigures._fields}
@@ -141,8 +139,7 @@ class TestSeveral:
     def test_folders_of_one_name_keep_theirs_apart(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:
         other = cut(bag, tmp_path / 'jump', 0.7)
         limits = limits_file(tmp_path, 'limits: {sticks: {max: 1}}')
-        code, out, _ = checked(capsys, bag, other, '--limits', limits)
-        assert code == 0
+        out = done(capsys, 'check', bag, other, '--limits', limits)
         assert [line.partition(': ')[0] for line in out.splitlines() if ' states, ' in line] == [str(bag), str(other)]
 
     def test_a_run_given_twice_is_refused(self, tmp_path: Path, bag: Path, capsys: Capture) -> None:

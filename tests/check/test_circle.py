@@ -28,7 +28,7 @@ from stickslip_sim.scene import scene_from_values
 from stickslip_sim.scene.ros_yaml import read_yaml
 from tests.support.check_files import checked, limits_file, refused
 from tests.support.repository import ROOT
-from tests.support.tool import Capture
+from tests.support.tool import Capture, done
 
 RADIUS, RATE = 0.05, 5.0                   # m, rad/s
 MASS, STIFFNESS, DAMPING = 10.0, 1.0e5, 2.0e3
@@ -125,9 +125,8 @@ class TestRuns:
 class TestTool:
     def test_the_example_and_its_files(self, tmp_path: Path, capsys: Capture) -> None:
         picture, xml, found = (tmp_path / name for name in ('c.png', 'c.xml', 'c.json'))
-        code, out, err = checked(capsys, '--circle', X, Y, '--duration', '14', '--limits', CIRCLE, '--plot', picture,
-                                 '--junit', xml, '--json', found)
-        assert (code, err) == (0, '')
+        out = done(capsys, 'check', '--circle', X, Y, '--duration', '14', '--limits', CIRCLE, '--plot', picture,
+                   '--junit', xml, '--json', found)
         text = (ROOT / 'docs' / 'check.md').read_text()
         assert '\n'.join(out.splitlines()[1:-1]) in text
         assert picture.read_bytes().startswith(b'\x89PNG')
@@ -179,9 +178,7 @@ class TestTool:
         ([X, Y, '--circle', '--set', 'drive.amplitude=0.0'], ['--circle = ', 'a whole turn of 360 degrees']),
     ])
     def test_refusals(self, arguments: list[str], words: list[str], capsys: Capture) -> None:
-        line = refused(capsys, *arguments, '--duration', '1')
-        for word in words:
-            assert word in line
+        refused(capsys, *arguments, '--duration', '1', words=words)
 
     @pytest.mark.parametrize(('text', 'words'), [
         (f'circle: {{radius: -1.0}}\n{GLITCH}', ['circle.radius = -1.0', '> 0']),
@@ -193,9 +190,7 @@ class TestTool:
         ('limits: {timing: valid}', ['timing', 'real time']),
     ])
     def test_limits_that_say_nothing(self, text: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
-        line = refused(capsys, '--circle', X, Y, '--duration', DURATION, '--limits', limits_file(tmp_path, text))
-        for word in words:
-            assert word in line
+        refused(capsys, '--circle', X, Y, '--duration', DURATION, '--limits', limits_file(tmp_path, text), words=words)
 
     def test_axes_at_other_times(self, tmp_path: Path, capsys: Capture) -> None:
         slow = tmp_path / 'y.yaml'
@@ -205,9 +200,8 @@ class TestTool:
 
 class TestPositioning:
     def test_the_scene_and_its_limits(self, tmp_path: Path, capsys: Capture) -> None:
-        code, out, err = checked(capsys, 'ball_screw', '--positioning', '--duration', '30', '--limits', POSITIONS,
-                                 '--json', tmp_path / 'p.json')
-        assert (code, err) == (0, '')
+        out = done(capsys, 'check', 'ball_screw', '--positioning', '--duration', '30', '--limits', POSITIONS, '--json',
+                   tmp_path / 'p.json')
         assert 'ISO 230-2: 5 targets' in out
         found = json.loads((tmp_path / 'p.json').read_text())['positioning']
         assert [one['target'] for one in found['targets']] == pytest.approx([0.02, 0.11, 0.205, 0.29, 0.385])
@@ -238,6 +232,4 @@ class TestPositioning:
         (f'positioning: {{target: 1.0}}\n{REVERSAL}', '1', ['positioning.target', 'one of targets, dwell, tolerance']),
     ])
     def test_refusals(self, text: str, duration: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
-        line = refused(capsys, 'ball_screw', '--duration', duration, '--limits', limits_file(tmp_path, text))
-        for word in words:
-            assert word in line
+        refused(capsys, 'ball_screw', '--duration', duration, '--limits', limits_file(tmp_path, text), words=words)

@@ -23,7 +23,7 @@ from stickslip_sim.runs import simulate, simulate_events
 from stickslip_sim.runs.error_estimate import error_estimate
 from stickslip_sim.scene import scene_names
 from tests.support.repository import ROOT
-from tests.support.tool import Capture, answered
+from tests.support.tool import Capture, answered, done
 
 EVENT_HEADER = 'time,kind,direction,position,velocity,drive_force,friction_force,static_coefficient,rest_time'
 SAMPLE_HEADER = 'time,position,velocity,acceleration,drive_position,drive_force,friction_force,mode'
@@ -72,8 +72,7 @@ def test_scenes_are_listed_with_a_line_each(capsys: Capture) -> None:
 
 
 def test_summary_for_people(capsys: Capture) -> None:
-    assert run(['simulate', 'paper_fig8', '--duration', '60']) == 0
-    out = capsys.readouterr().out
+    out = done(capsys, 'simulate', 'paper_fig8', '--duration', '60')
     for words in ('paper_fig8', '90 breakaway', 'stick-slip', 'settled', '659.07 ms', '1.3181 mm', '11.664 mm/s'):
         assert words in out
 
@@ -84,8 +83,7 @@ def test_summary_of_smooth_sliding(capsys: Capture) -> None:
 
 
 def test_events_to_standard_output_are_exact(capsys: Capture) -> None:
-    code, out, err = answered(capsys, 'simulate', 'paper_fig8', '--duration', '3', '--events', '-')
-    assert (code, err) == (0, '')
+    out = done(capsys, 'simulate', 'paper_fig8', '--duration', '3', '--events', '-')
     assert out.splitlines()[0] == EVENT_HEADER
     rows = list(csv.DictReader(io.StringIO(out)))
     events = [e for e in simulate_events(load_scene('paper_fig8'), 3.0).events if e.kind != EventKind.KNOT]
@@ -160,8 +158,7 @@ def test_existing_files_are_replaced(tmp_path: Path) -> None:
 
 def test_the_summary_gives_way_to_what_is_written_to_standard_output(tmp_path: Path, capsys: Capture) -> None:
     simulate = ['simulate', 'paper_fig7', '--duration', '1']
-    assert run([*simulate, '--events', str(tmp_path / 'e.csv'), '--plot', str(tmp_path / 'p.png')]) == 0
-    out = capsys.readouterr().out
+    out = done(capsys, *simulate, '--events', tmp_path / 'e.csv', '--plot', tmp_path / 'p.png')
     assert out.startswith('paper_fig7: 1 s')
     assert 'events' in out
     assert run([*simulate, '--events', '-', '--plot', str(tmp_path / 'p.png')]) == 0

@@ -48,9 +48,7 @@ from tests.support.waiting import wait_for
     (['sing'], ['sing']),
 ])
 def test_wrong_use(arguments: list[str], words: list[str], capsys: Capture) -> None:
-    line = refused(capsys, *arguments)
-    for word in words:
-        assert word in line
+    refused(capsys, *arguments, words=words)
 
 
 def test_wrong_use_where_click_is_older(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:

@@ -12,7 +12,7 @@ from stickslip_sim.check.verification import verify
 from stickslip_sim.controllers.own_controller import load_controller, parse_gain
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import read_run
-from tests.support.tool import Capture, answered, refused
+from tests.support.tool import Capture, answered, done, refused
 
 OWN = '''
 from dataclasses import dataclass
@@ -97,8 +97,7 @@ def test_a_limit_that_is_not_kept(folder: Path, capsys: Capture) -> None:
 
 
 def test_to_standard_output(capsys: Capture) -> None:
-    code, out, _ = answered(capsys, 'close-loop', 'own.py:still', *LOOP, '--json', '-')
-    assert code == 0
+    out = done(capsys, 'close-loop', 'own.py:still', *LOOP, '--json', '-')
     assert json.loads(out)['receipt']['controller']['name'] == 'still'
 
 

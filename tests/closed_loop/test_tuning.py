@@ -27,7 +27,7 @@ from stickslip_sim.report.values import json_text
 from tests.support.linear_loop import loop_matrix
 from tests.support.own_controllers import Following
 from tests.support.repository import ROOT
-from tests.support.tool import Capture, answered, refused
+from tests.support.tool import Capture, answered, done, refused
 
 pytestmark = pytest.mark.slow
 
@@ -344,9 +344,8 @@ class TestTheVerb:
         assert title.startswith('Cascade on positioning, asked 1000 times a second: its loop about stick, and about ')
 
     def test_json(self, capsys: Capture) -> None:
-        code, out, err = answered(capsys, 'tune', 'my_controller.py:Cascade', '--scene', 'positioning', '--json', '-',
-                                  '--gain', 'integral_time=0.2', '--rate', '500', '--duration', '1')
-        assert (code, err) == (0, '')
+        out = done(capsys, 'tune', 'my_controller.py:Cascade', '--scene', 'positioning', '--json', '-', '--gain',
+                   'integral_time=0.2', '--rate', '500', '--duration', '1')
         found = json.loads(out)
         assert (found['controller'], found['rate']) == ('Cascade', 500.0)
         assert found['feed'] == 0.01

@@ -20,7 +20,7 @@ from stickslip_sim.plots.characteristics import Characteristics, plot_characteri
 from stickslip_sim.recording import read_run, write_measured
 from stickslip_sim.runs import Run, simulate
 from stickslip_sim.scene import Scene, changed, scene_from_values
-from tests.support.tool import Capture, answered, refused
+from tests.support.tool import Capture, done, refused
 
 OFFSET, NOISE, ENCODER, RATE = -3.3, 0.2, 1e-6, 500.0   # N, N, m, Hz
 MOTOR = scene_from_values({
@@ -62,8 +62,7 @@ TEST_FORCES = (40.0, 90.0, -45.0, -80.0, 60.0, -40.0, -70.0, 55.0)
 def test_another_run_is_followed_by_its_own_force(found: Path, tmp_path: Path, capsys: Capture) -> None:
     """To a thousandth of its way; the force of the run that it was identified from leads elsewhere."""
     run = measured(tmp_path / 'test', TEST_FORCES, begin=0.01)
-    code, said, _ = answered(capsys, 'compare', run, found / 'identified.yaml', '--out', tmp_path / 'beside')
-    assert code == 0
+    said = done(capsys, 'compare', run, found / 'identified.yaml', '--out', tmp_path / 'beside')
     assert 'its force is the one measured in test, less the errors of its sensor: offset -3.' in said
     assert 'it starts where test does' in said
     assert ' RMSE over the same time' in said
@@ -92,8 +91,7 @@ def test_it_ends_with_the_run(found: Path, tmp_path: Path, capsys: Capture) -> N
 
 def test_a_motion_without_cycles_is_compared_over_time(found: Path, tmp_path: Path, capsys: Capture) -> None:
     run = measured(tmp_path / 'once', (60.0, 60.0, 60.0))
-    code, said, _ = answered(capsys, 'compare', run, found / 'identified.yaml', '--out', tmp_path / 'beside')
-    assert code == 0
+    said = done(capsys, 'compare', run, found / 'identified.yaml', '--out', tmp_path / 'beside')
     assert ' RMSE over the same time' in said
     assert 'means of' not in said
     assert 'over the same time: (a) forces' in (tmp_path / 'beside' / 'report.html').read_text()

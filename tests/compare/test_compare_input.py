@@ -27,15 +27,6 @@ def refused(capsys: Capture, tmp_path: Path, *arguments: str | Path) -> str:
     return err
 
 
-def test_a_folder_that_is_no_bag(tmp_path: Path, capsys: Capture) -> None:
-    (tmp_path / 'empty').mkdir()
-    assert 'no recorded run there' in refused(capsys, tmp_path, tmp_path / 'empty')
-    assert 'no such run' in refused(capsys, tmp_path, tmp_path / 'nothing.mcap')
-    (tmp_path / 'text.mcap').write_text('what a nice day')
-    assert 'is not an MCAP file' in refused(capsys, tmp_path, tmp_path / 'text.mcap')
-    assert 'paper_fig8' in refused(capsys, tmp_path, 'paper_fig9')
-
-
 @pytest.mark.parametrize('storage', list(StoragePlugin))
 def test_a_bag_of_something_else(storage: StoragePlugin, tmp_path: Path, capsys: Capture) -> None:
     store = get_typestore(Stores.ROS2_JAZZY)
@@ -63,12 +54,6 @@ def test_an_mcap_file_of_another_kind(tmp_path: Path, capsys: Capture) -> None:
     assert 'no topic of type stickslip_msgs/msg/SliderState' in refused(capsys, tmp_path, tmp_path / 'robot.mcap')
 
 
-@pytest.mark.parametrize('topic', ['/slider_state', '/friction_force', '/mode_event'])
-def test_a_missing_topic(topic: str, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    rewritten(fig8_bag, tmp_path / 'less', lambda name: None if name == topic else name)
-    assert 'no topic of type stickslip_msgs/msg/' in refused(capsys, tmp_path, tmp_path / 'less')
-
-
 def test_two_axes(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
     names = {'/slider_state': '/left/slider_state', '/friction_force': '/right/friction_force'}
     both = rewritten(fig8_bag, tmp_path / 'both', lambda name: names.get(name, name))
@@ -88,11 +73,6 @@ def test_messages_of_another_version(fig8_bag: Path, tmp_path: Path, capsys: Cap
     line = refused(capsys, tmp_path, tmp_path / 'old')
     assert '/slider_state has no drive_force' in line
     assert 'recorded by another version?' in line
-
-
-def test_a_bag_without_its_scene(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    rewritten(fig8_bag, tmp_path / 'bare', attachment=lambda name: None)
-    assert 'it has no scene.yaml' in refused(capsys, tmp_path, tmp_path / 'bare')
 
 
 def test_a_cut_file_is_used_as_far_as_it_goes(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -121,15 +101,6 @@ def test_unreadable_compressions(fig8_bag: Path, tmp_path: Path, capsys: Capture
     assert 'run_0.mcap.zstd is not read' in refused(capsys, tmp_path, tmp_path / 'packed')
 
 
-def test_an_existing_folder_stays(fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
-    assert run(['compare', str(fig8_bag), '--out', str(tmp_path)]) == 2
-    assert 'a folder that does not exist' in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
-    (tmp_path / 'file').touch()
-    assert run(['compare', str(fig8_bag), '--out', str(tmp_path / 'file' / 'where')]) == 2
-    assert f'in a folder; {tmp_path / "file"} is not a folder' in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(('arguments', 'word'), [
     (['--duration', '0', 'paper_fig7'], 'duration'), (['--duration', 'nan', 'paper_fig7'], 'duration'),
     (['--duration', '2e4', 'paper_fig7'], 'at most 50000 events'),
@@ -141,14 +112,6 @@ def test_wrong_use(arguments: list[str], word: str, tmp_path: Path, capsys: Capt
 @pytest.mark.parametrize('option', [['--duration', '1'], ['--set', 'axis.mass=1.0']])
 def test_options_for_scenes_alone(option: list[str], fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
     assert 'applies to scenes' in refused(capsys, tmp_path, fig8_bag, *option)
-
-
-def test_the_name_of_a_scene_is_the_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:
-    """Also where a folder of that name is."""
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / 'paper_fig8').mkdir()
-    assert run(['compare', 'paper_fig8', '--duration', '1', '--out', 'out']) == 0
-    assert 'no recorded run there' in refused(capsys, tmp_path / 'paper_fig8', './paper_fig8')
 
 
 def test_a_failure_leaves_nothing(tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:

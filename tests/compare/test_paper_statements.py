@@ -4,6 +4,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,7 @@ NORMAL = 3432.3275   # N
 KINETIC = 0.12 * NORMAL   # N, at rest
 
 
+@cache
 def densely(scene: str, duration: float = 10.0, **changes: object) -> SimulatedRun:
     """Simulate a scene; in the names of changes a double underscore stands for the dot."""
     given = {name.replace('__', '.'): value for name, value in changes.items()}

@@ -18,7 +18,7 @@ import pytest
 import stickslip_sim as stickslip
 from stickslip_sim.check.observed_run import timing_of
 from stickslip_sim.recording import open_bag
-from tests.support.node_processes import attentive, executable, recording_into, running
+from tests.support.node_processes import attentive, recording_into, running
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered, restore_interrupt
@@ -245,22 +245,22 @@ class TestFiveMinutes:
         assert (code, 'no controller was checked' in errors) == (3, True)
 
     def test_lock_step_gives_the_same_recorded_run_each_time(self, folder: Path, capsys: Capture) -> None:
-        with started(executable('sim_node'), *self.STEPPED_AXIS[1:]) as axis:
+        with running(*self.STEPPED_AXIS[2:]) as axis:
             assert python(*self.STEPPER[1:], '--duration', '0.3').returncode == 0
             for words in ('record off', 'reset', 'record'):
                 code, _, errors = answered(capsys, 'call', *words.split())
                 assert code == 0, errors
             assert python(*self.STEPPER[1:], '--duration', '0.2').returncode == 0
-            interrupt(axis)
+            assert axis.end()[0] == 0
         first, second = sorted((folder / 'runs').iterdir())
         whole, part = (open_bag(run).columns('/slider_state')['position'].tolist() for run in (first, second))
         assert (part, len(whole)) == (whole[:201], 301)
         assert answered(capsys, 'verify', first)[0] == 0
 
     def test_in_lock_step_the_check_prints_what_the_page_shows(self, capsys: Capture) -> None:
-        with started(executable('sim_node'), *self.STEPPED_AXIS[1:]) as axis:
+        with running(*self.STEPPED_AXIS[2:]) as axis:
             assert python(*self.STEPPER[1:]).returncode == 0
-            interrupt(axis)
+            assert axis.end()[0] == 0
         code, lines, errors = self.check(capsys)
         assert code == 3, errors
         assert '\n'.join(f'    {line}' for line in lines[2:]) in self.PAGE

@@ -154,7 +154,7 @@ class TestNodes:
         folder = tmp_path / 'run'
         axis, = given('sim', scene='cutting_force', namespace='press', mode='free_run', rate='500', record='true',
                       folder=str(folder), parameters='seed:=3 time.factor:=2.0', clock='clock')
-        with running(*axis.words, afresh=True) as process, client('/press') as press:
+        with running(*axis.words) as process, client('/press') as press:
             press.connect()
             press.next('slider_state', lambda state: state.step > 100)
             values = press.values('time.rate', 'seed')
@@ -169,9 +169,9 @@ class TestNodes:
     def test_of_controlled(self, tmp_path: Path) -> None:
         axis, controller = given('controlled', namespace='mill', folder=str(tmp_path / 'run'),
                                  feed='0.01', prefix='y')    # to YAML a truth value
-        with running(*axis.words, afresh=True) as bench, client('/mill') as mill:
+        with running(*axis.words) as bench, client('/mill') as mill:
             mill.connect()
-            with running(*controller.words, program=controller.executable, afresh=True) as following:
+            with running(*controller.words, program=controller.executable) as following:
                 mill.next('slider_state', lambda state: state.position > 0.0005)
                 assert_clean(*following.end())
             assert_clean(*bench.end())

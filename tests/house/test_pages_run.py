@@ -164,7 +164,8 @@ class TestIdentification:
 def test_the_worked_axis(clone: Path, capsys: Capture) -> None:
     """From the exports on: what is exact stands as it is printed; what is fitted is near it, and near the truth."""
     worked_axis.data()
-    said = {name: done(capsys, command) for name, command in worked_axis.steps()}
+    coarser = {'identify': ' --set friction.kinetic.tolerance=1e-3'}    # than the default of 1e-4: for half the time
+    said = {name: done(capsys, command + coarser.get(name, '')) for name, command in worked_axis.steps()}
     for name in ('import', 'plot', 'friction'):
         assert quoted(said[name]) in part_of(WORKED, name), name
     printed = part_of(WORKED, 'identify')

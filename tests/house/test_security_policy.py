@@ -119,7 +119,7 @@ def look(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
         for program in PROGRAMS:
             parameters = (word for value in program.parameters for word in ('-p', value))
             stack.enter_context(running('-r', f'__ns:={program.namespace}', *parameters, options=program.options,
-                                        program=program.executable, folder=folder, afresh=True))
+                                        program=program.executable, folder=folder))
         yield looking
 
 

@@ -22,7 +22,7 @@ from stickslip_sim.inputs.csv_table import Rows
 from stickslip_sim.recording import MeasuredRun, open_bag, read_run
 from stickslip_sim.runs import SimulatedRun, simulate
 from stickslip_sim.scene import Scene
-from tests.support.tool import answered, refused
+from tests.support.tool import answered, done, refused
 
 Capture = pytest.CaptureFixture[str]
 COLUMNS = '--columns', 'time=t,position=x,velocity=v,drive_position=s', '--columns', 'drive_force=F'
@@ -47,8 +47,7 @@ def data(simulated: SimulatedRun, tmp_path_factory: pytest.TempPathFactory) -> P
 
 @pytest.fixture
 def run(data: Path, tmp_path: Path, capsys: Capture) -> MeasuredRun:
-    code, out, err = answered(capsys, 'import', data, *COLUMNS, *UNITS, '--out', tmp_path / 'run')
-    assert (code, err) == (0, '')
+    out = done(capsys, 'import', data, *COLUMNS, *UNITS, '--out', tmp_path / 'run')
     assert '6001 rows, 6 s: position, velocity, drive_position, drive_force' in out
     assert 'modes and cycles are derived: a slip is faster than' in out
     found = read_run(tmp_path / 'run')
@@ -151,9 +150,7 @@ def test_others_are_compared_with_it(run: MeasuredRun, tmp_path: Path, capsys: C
     folder, report = run.bag.path.parent, tmp_path / 'report'
     answered(capsys, 'simulate', 'paper_fig7', '--duration', '6', '--set', 'axis.mass=500.0', '--bag',
              tmp_path / 'heavy')
-    code, out, _ = answered(capsys, 'compare', folder, 'paper_fig7', tmp_path / 'heavy', '--duration', '6', '--out',
-                            report)
-    assert code == 0
+    out = done(capsys, 'compare', folder, 'paper_fig7', tmp_path / 'heavy', '--duration', '6', '--out', report)
     assert 'modes and cycles are derived' in out
     found = json.loads((report / 'report.json').read_text())
     assert found['measured'] == 'run'
@@ -214,9 +211,8 @@ def test_a_unit_has_a_factor(tmp_path: Path, capsys: Capture) -> None:
     """Counts of an encoder that counts backwards, and a motor's voltage."""
     path = tmp_path / 'counts.csv'
     path.write_text('t,counts,volts\n0,0,1\n0.001,-3,2\n0.002,-20,-0.5\n', encoding='utf-8')
-    code, _, err = answered(capsys, 'import', path, '--columns', 'time=t,position=counts,external_force=volts',
-                            '--unit', 'position=-0.05 um,external_force=35.15N', '--out', tmp_path / 'run')
-    assert (code, err) == (0, '')
+    done(capsys, 'import', path, '--columns', 'time=t,position=counts,external_force=volts', '--unit',
+         'position=-0.05 um,external_force=35.15N', '--out', tmp_path / 'run')
     samples = read_run(tmp_path / 'run').samples
     assert samples['position'].tolist() == [0.0, 1.5e-7, 1e-6]
     assert samples['external_force'].tolist() == [35.15, 70.3, -17.575]
@@ -412,8 +408,7 @@ def test_an_export_as_it_comes(name: str, tmp_path: Path, capsys: Capture) -> No
     path = tmp_path / f'{name}.csv'
     path.write_bytes(text.encode('latin-1' if name == 'excel' else 'utf-8'))
     unit = ('--unit', units) if units else ()
-    code, out, err = answered(capsys, 'import', path, '--columns', columns, *unit, '--out', tmp_path / 'run')
-    assert (code, err) == (0, '')
+    out = done(capsys, 'import', path, '--columns', columns, *unit, '--out', tmp_path / 'run')
     assert ('units of the headings' in out) == (name in ('siemens', 'lecroy', 'excel'))
     samples = read_run(tmp_path / 'run').samples
     expected = np.array(ROWS).T * [[1e-3], [1e-3], [1.0]]

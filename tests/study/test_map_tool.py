@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip map` as a user meets it: pictures of sweeps, and folders that are none."""
 
-import json
 import math
 import shutil
 from pathlib import Path
@@ -19,7 +18,7 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate_events
 from stickslip_sim.study import EvenGrid, Study, diagrams, variation
 from stickslip_sim.study.diagrams import bifurcation, borders, ending_at
-from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, SIDECAR, Folder
+from stickslip_sim.study.folder import PARTIAL, POINTS_TABLE, Folder
 from stickslip_sim.study.study import study_of
 from stickslip_sim.study.table import read_columns
 from tests.support.tool import Capture, refused
@@ -155,31 +154,6 @@ def test_what_is_no_complete_sweep_of_one_or_two_parameters_is_refused(swept: Pa
     assert run(['sweep', 'paper_fig7', *drawn]) == 0
     capsys.readouterr()
     assert 'a grid of two parameters' in refused(capsys, 'map', tmp_path / 's', *picture)
-    sidecar = json.loads((swept / SIDECAR).read_text())
-    over = sidecar['over']
-    for changed in ({'over': None}, {'over': [{**one, 'count': '7'} for one in over]}, {'scene_text': 3}, {'points': 7},
-                    {'over': [{**one, 'low': 'a'} for one in over]}, {'duration': '1'}, {'sobol': {'points': 4}}):
-        (tmp_path / 'part' / SIDECAR).write_text(json.dumps({**sidecar, **changed}))
-        assert 'it was changed' in refused(capsys, 'map', tmp_path / 'part', *picture), changed
-    (tmp_path / 'part' / SIDECAR).write_text('[' * 100_000)
-    assert 'study.json' in refused(capsys, 'map', tmp_path / 'part', *picture)
     shutil.copytree(swept, tmp_path / 'cut')
     (tmp_path / 'cut' / POINTS_TABLE).write_bytes((swept / POINTS_TABLE).read_bytes()[:-300])
     assert 'points' in refused(capsys, 'map', tmp_path / 'cut', *picture)
-
-
-@pytest.mark.parametrize(('place', 'value'), [
-    (('points',), 4), (('duration',), '1'), (('over', 0, 'count'), 3.0), (('over', 0, 'low'), 'x'),
-    (('over', 0, 'name'), None), (('over',), False), (('sobol',), []), (('scene_text',), 7)])
-def test_an_edited_description_is_refused(tmp_path: Path, capsys: Capture, place: tuple[Any, ...], value: Any) -> None:
-    out = tmp_path / 'out'
-    assert run(['sweep', 'paper_fig7', '--over', 'drive.velocity=0.001:0.01:3', '--duration', '1', '--out',
-                str(out)]) == 0
-    sidecar = node = json.loads((out / SIDECAR).read_text())
-    for key in place[:-1]:
-        node = node[key]
-    node[place[-1]] = value
-    (out / SIDECAR).write_text(json.dumps(sidecar))
-    capsys.readouterr()
-    refused(capsys, 'map', out, '--out', tmp_path / 'map.svg')
-    assert not (tmp_path / 'map.svg').exists()

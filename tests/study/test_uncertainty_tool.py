@@ -4,6 +4,7 @@
 
 import json
 import os
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +15,7 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.study.folder import LONGEST_SIDECAR, PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.study import study_of
-from tests.support.tool import Capture, answered, refused
+from tests.support.tool import Capture, answered, done, refused
 
 KNOWN = """parameters:
   friction.static.limit: {distribution: normal, mean: 0.24, standard_deviation: 0.02, between: [0.18, 0.3]}
@@ -41,10 +42,10 @@ def test_a_distribution_in_the_wrong_unit_is_asked_back(tmp_path: Path, capsys: 
     assert (code, '16 samples of 1 parameter, ' in out) == (0, True)
 
 
-def test_it_prints_percentiles_and_indices_and_writes_them(tmp_path: Path, file: str, capsys: Capture) -> None:
-    out = tmp_path / 'out'
-    assert run(['uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', str(out)]) == 0
-    said = capsys.readouterr().out
+def test_it_prints_percentiles_and_indices_writes_and_draws_them(tmp_path: Path, file: str, capsys: Capture) -> None:
+    out, pictures = tmp_path / 'out', [tmp_path / 'one.svg', tmp_path / 'two.svg']
+    common = 'uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', out, '--plot'
+    said = done(capsys, *common, pictures[0])
     figures = json.loads((out / 'uncertainty.json').read_text())
     assert '32 samples of 2 parameters, 128 points, 128 run now' in said
     assert 'cut to 0.18 .. 0.3 (0.0027 off)' in said
@@ -53,14 +54,19 @@ def test_it_prints_percentiles_and_indices_and_writes_them(tmp_path: Path, file:
     index = figures['indices']['period']['friction.static.time_constant']
     assert f'{index["first_order"]:6.3f} ± {index["error"]:.3f}' in said
     assert study_of(Folder(out).described()).count == 128
+    assert answered(capsys, *common, pictures[1], '--resume')[0] == 0
+    text, again = (picture.read_text() for picture in pictures)
+    for words in ('100 % of 64 points stick and slip', 'amplitude / mm', 'points / %', '5 and 95 %',
+                  'with its interactions', 'friction static time constant'):
+        assert words in text
+    assert text == again
 
 
 def test_correlated_parameters_have_percentiles_and_no_indices(tmp_path: Path, capsys: Capture) -> None:
     file, out, picture = tmp_path / 'friction.yaml', tmp_path / 'out', tmp_path / 'spread.svg'
     file.write_text(f'{KNOWN}correlations:\n  friction.static.limit: {{friction.static.time_constant: 0.9}}\n')
     common = ('uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', out, '--plot', picture)
-    code, said, _ = answered(capsys, *common)
-    assert code == 0
+    said = done(capsys, *common)
     assert '32 samples of 2 parameters, 64 points, 64 run now' in said
     assert 'correlated: most of all friction.static.time_constant with friction.static.limit, +0.9' in said
     assert 'none of correlated ones, which vary together' in said
@@ -70,17 +76,6 @@ def test_correlated_parameters_have_percentiles_and_no_indices(tmp_path: Path, c
     assert answered(capsys, *common, '--resume')[0] == 0
     file.write_text(KNOWN)
     assert 'its points is another' in refused(capsys, *common, '--resume')
-
-
-def test_a_picture_of_it(tmp_path: Path, file: str) -> None:
-    common = ['uncertainty', 'paper_fig7', '--with', file, '--samples', '32', '--out', str(tmp_path / 'out')]
-    assert run([*common, '--plot', str(tmp_path / 'one.svg')]) == 0
-    assert run([*common, '--plot', str(tmp_path / 'two.svg'), '--resume']) == 0
-    text = (tmp_path / 'one.svg').read_text()
-    for words in ('100 % of 64 points stick and slip', 'amplitude / mm', 'points / %', '5 and 95 %',
-                  'with its interactions', 'friction static time constant'):
-        assert words in text
-    assert text == (tmp_path / 'two.svg').read_text()
 
 
 def test_elements_of_a_table_name_their_speed_and_times_are_read_in_one_unit(tmp_path: Path, capsys: Capture) -> None:
@@ -132,21 +127,15 @@ def test_resumed_it_gives_the_same_files(tmp_path: Path, file: str) -> None:
 def test_misuse_gets_one_line_and_writes_nothing(arguments: list[str], words: tuple[str, ...], tmp_path: Path,
                                                  file: str, capsys: Capture) -> None:
     out = tmp_path / 'out'
-    assert run(['uncertainty', 'paper_fig7', '--with', file, '--out', str(out), *arguments]) == 2
-    said, error = capsys.readouterr()
-    assert (said, error.count('\n')) == ('', 1)
-    for word in words:
-        assert word in error
+    refused(capsys, 'uncertainty', 'paper_fig7', '--with', file, '--out', out, *arguments, words=words)
     assert not out.exists()
 
 
 def test_a_wrong_file_is_named(tmp_path: Path, capsys: Capture) -> None:
     path = tmp_path / 'friction.yaml'
     path.write_text(KNOWN.replace('mean', 'meen'))
-    assert run(['uncertainty', 'paper_fig7', '--with', str(path), '--out', str(tmp_path / 'out')]) == 2
-    error = capsys.readouterr().err
-    assert 'friction.yaml: friction.static.limit.meen' in error
-    assert 'did you mean mean?' in error
+    refused(capsys, 'uncertainty', 'paper_fig7', '--with', path, '--out', tmp_path / 'out',
+            words=('friction.yaml: friction.static.limit.meen', 'did you mean mean?'))
 
 
 def test_where_nothing_was_solved_that_is_what_it_prints(tmp_path: Path, file: str, capsys: Capture) -> None:
@@ -157,8 +146,7 @@ def test_where_nothing_was_solved_that_is_what_it_prints(tmp_path: Path, file: s
     failed = [','.join([*line.split(',')[:2], 'failed', *[''] * 10]) for line in lines]
     (tmp_path / 'out' / POINTS_TABLE).write_text('\n'.join((titles, *failed, '')))
     capsys.readouterr()
-    assert run([*command, '--resume']) == 0
-    out = capsys.readouterr().out
+    out = done(capsys, *command, '--resume')
     assert 'a share that is not known of those 0 of 32 independent points where it is known, 32 failed\n' in out
     assert '64 of 64 points failed: the exact engine gave up; see column motion\n' in out
     assert json.loads((tmp_path / 'out' / 'uncertainty.json').read_text())['stick_slip'] is None
@@ -177,18 +165,11 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def folder(swept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Path:
+def folder(swept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> Path:
     """Return a copy below the working directory: messages shorten long paths."""
     capsys.readouterr()
     monkeypatch.chdir(tmp_path)
     return Path(shutil.copytree(swept, 'other'))
-
-
-def refusal(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    assert run(list(arguments)) == 2
-    out, errors = capsys.readouterr()
-    assert (out, errors.count('\n')) == ('', 1)
-    return errors
 
 
 def mapped(folder: Path) -> list[str]:
@@ -209,17 +190,19 @@ def with_first(name: str, value: object) -> Callable[[Any], None]:
 
 @pytest.mark.parametrize('change', [
     *map(without, ('duration', 'over', 'sobol', 'uncertain', 'scene_text')),
-    with_value('scene_text', 5), with_value('duration', 'x'), with_value('over', 5), with_value('over', [{}]),
+    with_value('scene_text', 5), with_value('duration', '1'), with_value('points', 4), with_value('over', None),
+    with_value('over', False), with_value('over', 5), with_value('over', [{}]), with_value('sobol', []),
     with_value('sobol', 5), with_value('uncertain', 5), with_value('sobol', {'points': 10**12, 'seed': 0}),
-    with_first('name', ['a']), with_first('low', 'x'), with_first('low', 10**400), with_first('count', 'x'),
+    with_value('sobol', {'points': 4}), with_first('name', ['a']), with_first('name', None), with_first('low', 'x'),
+    with_first('low', 10**400), with_first('count', 'x'), with_first('count', '7'), with_first('count', 3.0),
     with_first('count', -3), with_first('log', 5),
 ])
 def test_a_description_that_is_none(change: Callable[[Any], None], folder: Path,
-                                    capsys: pytest.CaptureFixture[str]) -> None:
+                                    capsys: Capture) -> None:
     sidecar = json.loads((folder / SIDECAR).read_text())
     change(sidecar)
     (folder / SIDECAR).write_text(json.dumps(sidecar))
-    refusal(capsys, *mapped(folder))
+    assert re.search('it was changed|--sobol = 1000000000000 is refused|N >= 2', refused(capsys, *mapped(folder)))
 
 
 def nested(path: Path) -> None:
@@ -243,12 +226,12 @@ def sparse(path: Path) -> None:
 @pytest.mark.parametrize('make', [nested, endless, pipe, sparse])
 @pytest.mark.parametrize('name', [SIDECAR, POINTS_TABLE])
 def test_a_file_without_end(name: str, make: Callable[[Path], None], folder: Path,
-                            capsys: pytest.CaptureFixture[str]) -> None:
+                            capsys: Capture) -> None:
     make(folder / name)
-    assert name in refusal(capsys, *mapped(folder))
+    assert name in refused(capsys, *mapped(folder))
 
 
-def test_a_line_without_end(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_line_without_end(folder: Path, capsys: Capture) -> None:
     """The description says that there are so many points that a file of any size may be their table."""
     sidecar = json.loads((folder / SIDECAR).read_text())
     sidecar['over'][0]['count'] *= 10**10
@@ -256,23 +239,23 @@ def test_a_line_without_end(folder: Path, capsys: pytest.CaptureFixture[str]) ->
     (folder / SIDECAR).write_text(json.dumps(sidecar))
     (folder / POINTS_TABLE).write_bytes((folder / POINTS_TABLE).read_bytes().splitlines(keepends=True)[0])
     sparse(folder / POINTS_TABLE)
-    assert POINTS_TABLE in refusal(capsys, *mapped(folder))
+    assert POINTS_TABLE in refused(capsys, *mapped(folder))
 
 
 @pytest.mark.parametrize('make', [endless, sparse])
 def test_nobody_goes_on_with_what_has_no_end(make: Callable[[Path], None], folder: Path,
-                                             capsys: pytest.CaptureFixture[str]) -> None:
+                                             capsys: Capture) -> None:
     (folder / POINTS_TABLE).rename(folder / PARTIAL)
     make(folder / PARTIAL)
-    assert 'it was changed' in refusal(capsys, *SWEEP, '--out', str(folder), '--resume')
+    assert 'it was changed' in refused(capsys, *SWEEP, '--out', str(folder), '--resume')
 
 
-def test_nothing_that_a_link_leads_to_is_changed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_nothing_that_a_link_leads_to_is_changed(folder: Path, capsys: Capture) -> None:
     diary = folder.parent.absolute() / 'diary'
     diary.write_text('dear diary\n')
     (folder / POINTS_TABLE).unlink()
     (folder / PARTIAL).symlink_to(diary)
-    assert 'it was changed' in refusal(capsys, *SWEEP, '--out', str(folder), '--resume')
+    assert 'it was changed' in refused(capsys, *SWEEP, '--out', str(folder), '--resume')
     assert diary.read_text() == 'dear diary\n'
 
 

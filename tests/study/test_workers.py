@@ -25,7 +25,7 @@ from stickslip_sim.runs.batch import BatchFigures, Rounds, run_rounds
 from stickslip_sim.study import EvenGrid, Motion, Study, points, variation
 from stickslip_sim.study.folder import POINTS_TABLE, free_memory
 from stickslip_sim.study.sweep import processes
-from tests.support.tool import Capture
+from tests.support.tool import Capture, done
 
 pytestmark = pytest.mark.slow
 
@@ -185,9 +185,8 @@ def heavy_fail(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_sweep_has_the_word_failed_and_no_figures(flood: str, tmp_path: Path, capsys: Capture) -> None:
     out = tmp_path / 'out'
-    assert run(['sweep', flood, '--over', 'axis.mass=1e-9:1.0:2:log', '--over', 'axis.drive_stiffness=5e5:6e5:2',
-                '--duration', '4', '--out', str(out)]) == 0
-    said = capsys.readouterr().out
+    said = done(capsys, 'sweep', flood, '--over', 'axis.mass=1e-9:1.0:2:log', '--over',
+                'axis.drive_stiffness=5e5:6e5:2', '--duration', '4', '--out', out)
     assert '2 smooth sliding, 2 failed' in said or '2 failed, 2 smooth sliding' in said
     assert '2 of 4 points failed: the exact engine gave up; see column motion\n' in said
     rows = [line.split(',')[2:] for line in (out / POINTS_TABLE).read_text().splitlines()[1:]]
@@ -236,9 +235,8 @@ def test_critical_says_where_it_does_not_know(between: str, said: str, capsys: C
 @pytest.mark.usefixtures('heavy_fail')
 def test_uncertainty_counts_them_and_averages_over_the_others(tmp_path: Path, capsys: Capture) -> None:
     (tmp_path / 'known.yaml').write_text(UNCERTAIN)
-    assert run(['uncertainty', 'paper_fig7', '--with', str(tmp_path / 'known.yaml'), '--samples', '16', '--out',
-                str(tmp_path / 'out')]) == 0
-    said = capsys.readouterr().out
+    said = done(capsys, 'uncertainty', 'paper_fig7', '--with', tmp_path / 'known.yaml', '--samples', '16', '--out',
+                tmp_path / 'out')
     found = json.loads((tmp_path / 'out' / 'uncertainty.json').read_text())
     assert (found['points'], found['known'] + found['failed']) == (32, 32)
     assert 10 < found['failed'] < 22

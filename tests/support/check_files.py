@@ -4,7 +4,7 @@
 
 import math
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from stickslip_sim.bags.topics import DRIVE_VELOCITY, RECORDED, SLIDER_STATE
@@ -94,6 +94,6 @@ def checked(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
     return tool.answered(capsys, 'check', *arguments)
 
 
-def refused(capsys: Capture, *arguments: str | Path) -> str:
-    """Return the one line on standard error."""
-    return tool.refused(capsys, 'check', *arguments)
+def refused(capsys: Capture, *arguments: str | Path, words: Iterable[str] = ()) -> str:
+    """Return the one line on standard error, with these words in it."""
+    return tool.refused(capsys, 'check', *arguments, words=words)

@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -31,11 +32,19 @@ def answered(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
     return run([*map(str, arguments)]), *capsys.readouterr()
 
 
-def refused(capsys: Capture, *arguments: str | Path, code: int = 2) -> str:
-    """Run the tool in this process; return the one line that it says on standard error."""
+def done(capsys: Capture, *arguments: str | Path) -> str:
+    """Run the tool in this process, which succeeds and complains of nothing; return its standard output."""
+    code, out, err = answered(capsys, *arguments)
+    assert (code, err) == (0, '')
+    return out
+
+
+def refused(capsys: Capture, *arguments: str | Path, code: int = 2, words: Iterable[str] = ()) -> str:
+    """Run the tool in this process; return the one line that it says on standard error, with these words in it."""
     found, out, err = answered(capsys, *arguments)
     assert (found, out, err.count('\n')) == (code, '', 1)
     assert err.startswith('stickslip: ')
+    assert [word for word in words if word not in err] == [], err
     return err
 
 
