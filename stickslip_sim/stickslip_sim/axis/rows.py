@@ -72,19 +72,19 @@ class SampleRow:
 
     second: float = 0.0         # s, whole ones
     fraction: float = 0.0       # s
-    mode: float = 0.0           # `types.Mode`
-    direction: float = 0.0
-    position: float = 0.0       # m
-    velocity: float = 0.0       # m/s
-    acceleration: float = 0.0   # m/s²
+    mode: float = 0.0           # what the slider does: `types.Mode`
+    direction: float = 0.0      # of slip, 0 in stick
+    position: float = 0.0       # m, of the slider
+    velocity: float = 0.0       # m/s, of the slider
+    acceleration: float = 0.0   # m/s², of the slider
     drive: float = 0.0          # m, position of the drive
-    drive_velocity: float = 0.0   # m/s
-    drive_force: float = 0.0    # N
-    external: float = 0.0       # N
-    friction: float = 0.0       # N
+    drive_velocity: float = 0.0   # m/s, of the drive
+    drive_force: float = 0.0    # N, of the spring and the damper of the drive
+    external: float = 0.0       # N, on the slider
+    friction: float = 0.0       # N, on the slider, against a slip
     coefficient: float = 0.0    # |friction| over the normal force
     deflection: float = 0.0     # m, of a compliant contact
-    rest: float = 0.0           # s, rest time
+    rest: float = 0.0           # s, rest time, 0 where it does not stick
 
     def tolist(self) -> list[float]:
         """Return the numbers."""

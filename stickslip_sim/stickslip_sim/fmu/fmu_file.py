@@ -7,23 +7,23 @@ import platform
 import struct
 import sys
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
-from ..axis import pack
+from ..axis.fields import names_of
 from ..axis.layout import PARAMETER_FIELDS
+from ..axis.rows import SampleRow
 from ..core import ranges
 from ..core.errors import InputError
 from ..core.hot_path import UNIT
 from ..core.input_profile import InputProfile
-from ..core.types import EventKind, Mode
+from ..core.types import EventKind, Mode, Sample
 from ..core.version import __version__
-from ..plain_c.c_files import c_files
+from ..plain_c.c_files import SceneNumbers, c_files, notes_of, numbers_of
 from ..scene import PARAMETERS, Scene
-from ..simulation.inputs import Inputs, LoadedInputs
 
 _IDENTIFIER = 'stickslip_axis'
 # The parameters of a running node that are numbers of the axis as well, by the fields that they set.
@@ -35,17 +35,10 @@ _TUNED = {
     'friction.static.time_constant': ('static_tau', 'backward_tau'),
     'friction.static.exponent': ('static_exponent', 'backward_exponent'), 'friction.static.delay': ('static_delay',),
     'friction.scale': ()}
-_FACTOR = 'friction.scale'
+_MOST = ranges.TIME.high   # of a number that has no limit of its own
+_FNV_BASIS, _FNV_PRIME = 0xcbf29ce484222325, 0x100000001b3   # of the sum FNV-1a
 _UNITS = {'s': {'s': 1}, 'm': {'m': 1}, 'm/s': {'m': 1, 's': -1}, 'm/s2': {'m': 1, 's': -2}, 'kg': {'kg': 1},
           'N': {'kg': 1, 'm': 1, 's': -2}, 'N/m': {'kg': 1, 's': -2}, 'N.s/m': {'kg': 1, 's': -1}}
-_OUTPUTS = {   # of a sample, in its order
-    'mode': ('', 'what the slider does'), 'direction': ('', 'of slip, 0 in stick'), 'position': ('m', 'of the slider'),
-    'velocity': ('m/s', 'of the slider'), 'acceleration': ('m/s2', 'of the slider'),
-    'drive_position': ('m', 'of the drive'), 'drive_velocity': ('m/s', 'of the drive'),
-    'drive_force': ('N', 'of the spring and the damper of the drive'), 'external_force': ('N', 'on the slider'),
-    'friction_force': ('N', 'on the slider, against a slip'),
-    'friction_coefficient': ('', 'size of the friction force over the normal force'),
-    'contact_deflection': ('m', 'of a compliant contact'), 'rest_time': ('s', '0 where it does not stick')}
 _ENUMERATIONS = {'Mode': {mode.name: int(mode) for mode in Mode},
                  'EventKind': {'NONE': -1, **{'ARREST' if kind is EventKind.STICK else kind.name: int(kind)
                                               for kind in EventKind}}}
@@ -82,21 +75,11 @@ def fmu_bytes(scene: Scene, version: int) -> bytes:
     if scene.solver.name != 'exact':
         raise InputError('solver.name', scene.solver.name, 'exact in an FMU', 'export with --set solver.name=exact')
     scene.make_simulator()    # refuses what the engine cannot follow
-    sources = c_files(scene, 1.0)
-    library = _library()
-    tuned = [one for one in PARAMETERS if one.name in _TUNED and one.live
-             and (one.when is None or one.when.holds(scene.values))
-             and not (one.name == 'axis.normal_force' and scene.normal_load is not None)]
-    starts = [float(str(scene.values.get(one.name, {_FACTOR: 1.0}.get(one.name, 0.0)))) for one in tuned]
-    parameters = [_Variable(40 + i, one.name, 'Float64', 'parameter', 'tunable', one.description,
-                            one.unit.replace(' ', '.'), start, one.low, one.high)
-                  for i, (one, start) in enumerate(zip(tuned, starts, strict=True))]
-    variables = [*_inputs(scene), *_outputs(), *parameters]
-    rows = [(*_fields(one.name, scene), one.low or 0.0, ranges.TIME.high if one.high is None else one.high)
-            for one in tuned]
+    sources, library, numbers = c_files(scene, 1.0), _library(), numbers_of(scene)
+    variables = list(_variables(scene, numbers.profiles['normal']))
     files: dict[str, str | bytes] = {
-             'modelDescription.xml': (_description_3 if version == 3 else _description_2)(scene, variables),
-             'resources/axis.txt': _numbers(scene, rows, starts, [one.start or 0.0 for one in _inputs(scene)]),
+             'modelDescription.xml': _description(scene, variables, version),
+             'resources/axis.txt': _numbers(scene, numbers, variables),
              'resources/scene.yaml': scene.text,
              'sources/stickslip_fmu.c': (Path(__file__).parent / 'stickslip_fmu.c').read_text(encoding='utf-8'),
              **{f'sources/{name}': sources[name] for name in ('stickslip_axis.c', 'stickslip_axis.h')},
@@ -124,123 +107,109 @@ def _platform(version: int) -> str:
     return f'{sys.platform}64' if version == 2 and machine == 'x86_64' else f'{machine}-{sys.platform}'
 
 
-def _fields(name: str, scene: Scene) -> tuple[float, float]:
-    """Return where the one or two numbers of a parameter stand; friction that depends on the direction has two."""
-    names = _TUNED[name]
-    if not names:
-        return float(len(PARAMETER_FIELDS)), 0.0
-    return (float(PARAMETER_FIELDS.index(names[0])),
-            float(PARAMETER_FIELDS.index(names[0 if scene.axis.friction.backward else -1])))
-
-
-def _inputs(scene: Scene) -> list[_Variable]:
-    load = scene.normal_load
-    normal = load.plus(scene.axis.normal_force) if load else None
-    return [_Variable(1 + i, f'{name}_command', 'Float64', 'input', 'continuous',
-                      f'{what}; the profile of the scene acts until this is set', unit, profile.value_at(0.0) + 0.0)
-            for i, (name, what, unit, profile) in enumerate((
-                ('drive_velocity', 'velocity of the drive', 'm/s', scene.drive),
-                ('external_force', 'external force on the slider', 'N', scene.force),
-                ('normal_force', 'normal force', 'N', normal))) if profile is not None]
-
-
-def _outputs() -> Iterator[_Variable]:
-    for i, (name, (unit, what)) in enumerate(_OUTPUTS.items()):
+def _variables(scene: Scene, normal: InputProfile | None) -> Iterator[_Variable]:
+    """Yield all variables; the library has the references of those that it computes by heart."""
+    yield _Variable(0, 'time', 'Float64', 'independent', 'continuous', 'simulation time', 's')
+    for i, (name, what, unit, profile, low) in enumerate((
+            ('drive_velocity', 'velocity of the drive', 'm/s', scene.drive, -_MOST),
+            ('external_force', 'external force on the slider', 'N', scene.force, -_MOST),
+            ('normal_force', 'normal force', 'N', normal, 0.0)), 1):
+        if profile is not None:
+            yield _Variable(i, f'{name}_command', 'Float64', 'input', 'continuous', f'{what}; the profile of the scene'
+                            ' acts until this is set', unit, profile.value_at(0.0) + 0.0, low, _MOST)
+    notes = notes_of(SampleRow)
+    for i, (name, field) in enumerate(zip(Sample._fields[2:], names_of(SampleRow)[2:], strict=True), 10):
         kind = {'mode': 'Mode', 'direction': 'Int64'}.get(name, 'Float64')
-        yield _Variable(10 + i, name, kind, 'output', 'continuous' if kind == 'Float64' else 'discrete', what, unit)
+        unit, _, what = notes[field].replace('^', '').partition(', ') if kind == 'Float64' else ('', '', notes[field])
+        yield _Variable(i, name, kind, 'output', 'continuous' if kind == 'Float64' else 'discrete',
+                        *((what, unit) if unit in _UNITS else (notes[field], '')))
     yield _Variable(30, 'event_count', 'Int64', 'output', 'discrete', 'events since the start')
     yield _Variable(31, 'event_time', 'Float64', 'output', 'discrete', 'time of the last event', 's')
     yield _Variable(32, 'event_kind', 'EventKind', 'output', 'discrete', 'kind of the last event')
+    tuned = (one for one in PARAMETERS if one.name in _TUNED and (one.when is None or one.when.holds(scene.values))
+             and not (one.name == 'axis.normal_force' and normal is not None))
+    for i, one in enumerate(tuned, 40):
+        start = scene.values.get(one.name, 1.0 if one.name == 'friction.scale' else 0.0)
+        yield _Variable(i, one.name, 'Float64', 'parameter', 'tunable', one.description, one.unit.replace(' ', '.'),
+                        float(str(start)), one.low or 0.0, _MOST if one.high is None else one.high)
 
 
 # The numbers that the library reads, as the bits of doubles: no locale and no rounding comes between.
 
-def _numbers(scene: Scene, rows: Sequence[Sequence[float]], starts: Sequence[float], commands: list[float]) -> str:
-    parameters, load = pack(scene.axis), scene.normal_load
-    normal = None if load is None else load.plus(scene.axis.normal_force)
-    inputs = Inputs(scene.drive, scene.force) if load is None else LoadedInputs(scene.drive, scene.force, load)
-    sinusoids, initial = inputs.sinusoids(), scene.initial
-    profiles = [scene.drive, scene.force, normal]
-    numbers = [
-        len(parameters), len(rows), len(sinusoids) / 5, float(normal is not None),
-        *(len(one.starts) if one else 0 for one in profiles), *parameters, *chain.from_iterable(rows), *starts,
-        initial.position, initial.velocity, initial.rest_time, initial.stretch, initial.deflection,
-        *commands, *[0.0] * (3 - len(commands)), *sinusoids, *chain.from_iterable(map(_profile, profiles))]
-    words = (f'{struct.unpack("<Q", struct.pack("<d", number))[0]:016x}' for number in numbers)
-    return '\n'.join([f'{scene.hash} {len(numbers)}', *words, ''])
+def _numbers(scene: Scene, of: SceneNumbers, variables: Iterable[_Variable]) -> str:
+    sections = [chain.from_iterable(_row(one, scene) for one in variables), of.parameters, of.initial, of.sinusoids,
+                *map(_profile, of.profiles.values())]
+    numbers = [float(number) for section in map(list, sections) for number in (len(section), *section)]
+    words, total = struct.unpack(f'<{len(numbers)}Q', struct.pack(f'<{len(numbers)}d', *numbers)), _FNV_BASIS
+    for word in words:
+        total = (total ^ word) * _FNV_PRIME % 2**64
+    return '\n'.join([f'{scene.hash} {len(words)} {total:x}', *map('{:016x}'.format, words), ''])
+
+
+def _row(one: _Variable, scene: Scene) -> tuple[float, ...]:
+    """Return a variable as the library has it, with the one or two numbers of the axis that it sets.
+
+    Friction that depends on the direction has two numbers, of which the forward one is set.
+    """
+    is_what = {'input': 2, 'parameter': 3}.get(one.causality, int(one.type != 'Float64'))
+    names = _TUNED.get(one.name, ())
+    fields = [PARAMETER_FIELDS.index(name) for name in names] or [len(PARAMETER_FIELDS)]
+    return (one.reference, is_what, one.start or 0.0, one.low or 0.0, one.high or 0.0, fields[0],
+            fields[0 if scene.axis.friction.backward else -1])
 
 
 def _profile(of: InputProfile | None) -> list[float]:
-    return [of.period, *(value + 0.0 for value in chain(of.starts, of.values, of.rates))] if of else [0.0]
+    return [of.period, *(value + 0.0 for value in chain(of.starts, of.values, of.rates))] if of else []
 
 
 # The description in both versions
 
-def _attributes(**given: object) -> str:
-    return ''.join(f' {name.rstrip("_")}={quoteattr(str(value))}' for name, value in given.items()
-                   if value is not None and value != '')
-
-
 def _element(tag: str, /, *inside: str, **given: object) -> str:
-    head = f'<{tag}{_attributes(**given)}'
+    head = f'<{tag}' + ''.join(f' {name}={quoteattr(str(value))}' for name, value in given.items()
+                               if value is not None and value != '')
     return f'{head}>\n' + '\n'.join(inside) + f'\n</{tag}>' if inside else f'{head}/>'
 
 
-def _description_3(scene: Scene, variables: list[_Variable]) -> str:
-    time = _Variable(0, 'time', 'Float64', 'independent', 'continuous', 'simulation time', 's')
-    of_outputs = [{'valueReference': one.reference} for one in variables if one.causality == 'output']
+def _description(scene: Scene, variables: list[_Variable], version: int) -> str:
+    outputs = [(i, one.reference) for i, one in enumerate(variables, 1) if one.causality == 'output']
+    items = {name: [_element('Item', name=item, value=value) for item, value in values.items()]
+             for name, values in _ENUMERATIONS.items()}
+    state = 'State' if version == 3 else 'state'
+    able: dict[str, object] = {
+        'modelIdentifier': _IDENTIFIER, 'canHandleVariableCommunicationStepSize': 'true',
+        f'canGetAndSetFMU{state}': 'true', f'canSerializeFMU{state}': 'true'}
+    if version == 3:
+        kind = _element('CoSimulation', **able, hasEventMode='true')
+        types = [_element('EnumerationType', *inside, name=name) for name, inside in items.items()]
+        structure = [_element(tag, valueReference=reference) for tag in ('Output', 'InitialUnknown')
+                     for _, reference in outputs]
+        token = {'fmiVersion': '3.0', 'instantiationToken': scene.hash}
+    else:
+        kind = _element('CoSimulation', _element('SourceFiles', *(
+            _element('File', name=name) for name in ('stickslip_axis.c', 'stickslip_fmu.c'))), **able)
+        types = [_element('SimpleType', _element('Enumeration', *inside), name=name) for name, inside in items.items()]
+        structure = [_element(tag, *(_element('Unknown', index=i) for i, _ in outputs))
+                     for tag in ('Outputs', 'InitialUnknowns')]
+        token = {'fmiVersion': '2.0', 'guid': scene.hash}
     return _element(
-        'fmiModelDescription',
-        _element('CoSimulation', modelIdentifier=_IDENTIFIER, canHandleVariableCommunicationStepSize='true',
-                 canGetAndSetFMUState='true', canSerializeFMUState='true', hasEventMode='true'),
-        _units(), _element('TypeDefinitions', *(_element('EnumerationType', *_items(items), name=name)
-                                                for name, items in _ENUMERATIONS.items())),
-        '<LogCategories><Category name="logStatusError"/></LogCategories>',
+        'fmiModelDescription', kind,
+        _element('UnitDefinitions', *(_element('Unit', _element('BaseUnit', **base), name=name)
+                                      for name, base in _UNITS.items())),
+        _element('TypeDefinitions', *types), '<LogCategories><Category name="logStatusError"/></LogCategories>',
         '<DefaultExperiment startTime="0" stopTime="10" stepSize="0.001"/>',
-        _element('ModelVariables', *(_element(
-            one.type if one.type not in _ENUMERATIONS else 'Enumeration', name=one.name, valueReference=one.reference,
-            declaredType=one.type if one.type in _ENUMERATIONS else None, causality=one.causality,
-            variability=one.variability, description=one.description, unit=one.unit, min=one.low, max=one.high,
-            start=one.start) for one in (time, *variables))),
-        _element('ModelStructure', *(_element('Output', **one) for one in of_outputs),
-                 *(_element('InitialUnknown', **one) for one in of_outputs)),
-        fmiVersion='3.0', instantiationToken=scene.hash, **_of_the_model(scene))
+        _element('ModelVariables', *(_described(one, version) for one in variables)),
+        _element('ModelStructure', *structure), **token, modelName=scene.name, description=scene.summary,
+        generationTool=f'stickslip {__version__}', variableNamingConvention='structured')
 
 
-def _description_2(scene: Scene, variables: list[_Variable]) -> str:
-    def typed(one: _Variable) -> str:
-        name = {'Float64': 'Real', 'Int64': 'Integer'}.get(one.type, 'Enumeration')
-        return _element(name, declaredType=one.type if name == 'Enumeration' else None, unit=one.unit, min=one.low,
-                        max=one.high, start=one.start)
-
-    of_outputs = [_element('Unknown', index=i) for i, one in enumerate(variables, 1) if one.causality == 'output']
-    return _element(
-        'fmiModelDescription',
-        _element('CoSimulation', _element('SourceFiles', _element('File', name='stickslip_axis.c'),
-                                          _element('File', name='stickslip_fmu.c')),
-                 modelIdentifier=_IDENTIFIER, canHandleVariableCommunicationStepSize='true',
-                 canGetAndSetFMUstate='true', canSerializeFMUstate='true'),
-        _units(), _element('TypeDefinitions', *(
-            _element('SimpleType', _element('Enumeration', *_items(items)), name=name)
-            for name, items in _ENUMERATIONS.items())),
-        '<LogCategories><Category name="logStatusError"/></LogCategories>',
-        '<DefaultExperiment startTime="0" stopTime="10" stepSize="0.001"/>',
-        _element('ModelVariables', *(_element(
-            'ScalarVariable', typed(one), name=one.name, valueReference=one.reference, causality=one.causality,
-            variability=one.variability, description=one.description) for one in variables)),
-        _element('ModelStructure', _element('Outputs', *of_outputs), _element('InitialUnknowns', *of_outputs)),
-        fmiVersion='2.0', guid=scene.hash, **_of_the_model(scene))
-
-
-def _of_the_model(scene: Scene) -> dict[str, object]:
-    return {'modelName': scene.name, 'description': scene.summary, 'generationTool': f'stickslip {__version__}',
-            'variableNamingConvention': 'structured'}
-
-
-def _units() -> str:
-    return _element('UnitDefinitions', *(_element('Unit', _element('BaseUnit', **base), name=name)
-                                         for name, base in _UNITS.items()))
-
-
-def _items(items: dict[str, int]) -> list[str]:
-    return [_element('Item', name=name, value=value) for name, value in items.items()]
+def _described(one: _Variable, version: int) -> str:
+    is_listed = one.type in _ENUMERATIONS
+    what: dict[str, object] = {'name': one.name, 'valueReference': one.reference, 'causality': one.causality,
+                               'variability': one.variability, 'description': one.description}
+    value: dict[str, object] = {'declaredType': one.type if is_listed else None, 'unit': one.unit, 'min': one.low,
+                                'max': one.high, 'start': one.start}
+    kind = 'Enumeration' if is_listed else one.type
+    if version == 3:
+        return _element(kind, **what, **value)
+    kind = {'Float64': 'Real', 'Int64': 'Integer'}.get(kind, kind)
+    return _element('ScalarVariable', _element(kind, **value), **what)

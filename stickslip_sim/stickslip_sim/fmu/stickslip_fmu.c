@@ -1,8 +1,8 @@
 /* Copyright 2026 The stickslip authors
    SPDX-License-Identifier: Apache-2.0
 
-   An axis as an FMU for co-simulation, FMI 3.0 and 2.0, on what stickslip_axis.h promises.  The scene is read from
-   resources/axis.txt.  FMI's types are declared here as far as they are used; -DSTICKSLIP_FMI_HEADERS takes the official
+   An axis as an FMU for co-simulation, FMI 3.0 and 2.0, on what stickslip_axis.h promises.  The scene and the table of
+   its variables are read from resources/axis.txt.  FMI's types are declared here as far as they are used; -DSTICKSLIP_FMI_HEADERS takes the official
    headers instead, which so check each function. */
 
 #include <inttypes.h>
@@ -13,6 +13,8 @@
 #include <string.h>
 
 #include "stickslip_axis.h"
+
+#pragma GCC diagnostic ignored "-Wunused-parameter"    // FMI gives more than an axis needs
 
 #ifdef _WIN32
 #define EXPORT __declspec(dllexport)
@@ -44,34 +46,38 @@ typedef struct {
 } fmi2CallbackFunctions;
 #endif
 
-#define FIRST_SUM 14695981039346656037u   /* FNV-1a */
-#define SUM_FACTOR 1099511628211u
-
 typedef const uint32_t refs_3[];
 typedef const unsigned refs_2[];
 
-enum { NEW = 1, STARTING = 2, EVENT = 4, STEP = 8, ENDED = 16, ANY = 31 };
-enum { COMMANDS = 3, MOST_TUNED = 16, HEAD = 7, TUNED_ROW = 4, START = 5, MODE = 2 };
-/* the value references */
-enum { TIME = 0, FIRST_COMMAND = 1, FIRST_OUTPUT = 10, LAST_OUTPUT = 22, COUNT = 30, EVENT_TIME = 31, KIND = 32, FIRST_TUNED = 40 };
+enum { NEW = 1, STARTING = 2, EVENT = 4, STEP = 8, ENDED = 16, ANY = 31 };    /* phases */
+enum { TIME, DRIVE_COMMAND, NORMAL_COMMAND = 3, MODE = 10, REST_TIME = 22, COUNT = 30, EVENT_TIME, EVENT_KIND, VALUES = 56 };
+enum { REAL, WHOLE, COMMAND, TUNED };    /* what a variable is */
+enum { VARIABLES, PARAMETERS, INITIAL, SINUSOIDS, DRIVE, FORCE, NORMAL, SECTIONS };    /* of resources/axis.txt */
 
-/* What belongs to a state beside the numbers of the axis. */
+/* A variable, as modelDescription.xml has it; one that is tuned sets a field or two of the parameters. */
+typedef struct { double reference, is, start, low, high, field, other; } Variable;
+
+/* What belongs to a state beside the numbers of the axis; values and commands stand at their value references. */
 typedef struct {
-    double phase, is_started, has_new_inputs, has_new_parameters, start, event_count, event_time, event_kind;
-    double is_commanded[COMMANDS], command[COMMANDS], tuned[MOST_TUNED];
+    double phase, is_started, has_new_inputs, has_new_parameters, has_sample, start;
+    double is_commanded[NORMAL_COMMAND + 1], value[VALUES];
 } Own;
+
+typedef struct {
+    uint64_t id, sum;    /* of the scene; of what follows */
+    Own own;
+    double numbers[];    /* of the axis */
+} Saved;
 
 typedef struct {
     Own own, first;                    /* now, and before anything was set */
     axis *axis;
     uint64_t id;                       /* of the scene */
-    double *numbers, *parameters, *tuned_rows, *sinusoids, *scratch;
-    size_t count, parameter_count, tuned_count, sinusoid_count, command_count;
-    axis_inputs inputs;                /* of the scene */
-    axis_start_state initial;
+    double *numbers, *scratch, *section[SECTIONS];
+    size_t size[SECTIONS];
+    const Variable *variable[VALUES];  /* at their value references */
     axis_sinusoid *rows;
-    bool has_event_mode, stops, has_sample;
-    axis_sample_row sample;
+    bool has_event_mode, stops;
     void *environment;
     fmi3LogMessageCallback log_3;
     const fmi2CallbackFunctions *functions_2;
@@ -94,6 +100,11 @@ static int refuse(Instance *i, const char *format, ...)
     return fmi3Error;
 }
 
+static int done(Instance *i, int code)
+{
+    return code == AXIS_OK ? fmi3OK : refuse(i, "at %.17g s: %s", i->own.start + axis_time(i->axis), axis_text(code));
+}
+
 static bool is_in(Instance *i, int phases, const char *what)
 {
     bool is = ((int)i->own.phase & phases) != 0;
@@ -105,123 +116,104 @@ static bool is_in(Instance *i, int phases, const char *what)
     return is;
 }
 
+static uint64_t sum_of(const void *words, size_t bytes)    /* FNV-1a */
+{
+    uint64_t sum = 14695981039346656037u, bits;
+    for (const char *at = words, *end = at + bytes; at < end; at += sizeof bits) {
+        memcpy(&bits, at, sizeof bits);
+        sum = (sum ^ bits) * 1099511628211u;
+    }
+    return sum;
+}
+
 /* The scene */
 
-static bool read_numbers(Instance *i, const char *folder, const char *token)
+static void path_of(const char *folder, char *out, const char *end)
 {
-    char path[4096], known[128] = "", *out = path;
     bool is_uri = strncmp(folder, "file:", 5) == 0;
     folder += is_uri ? 5 : 0;
     folder += is_uri && strncmp(folder, "//", 2) == 0 ? 2 : 0;
-    for (unsigned code; *folder != 0 && out < path + sizeof path - 16; folder++) {
+    for (unsigned code; *folder != 0 && out < end; folder++) {
         bool is_coded = is_uri && sscanf(folder, "%%%2x", &code) == 1;
         *out++ = is_coded ? (char)code : *folder;
         folder += is_coded ? 2 : 0;
     }
     strcpy(out, "/axis.txt");
-    FILE *file = fopen(path, "r");
-    if (file == NULL || fscanf(file, "%127s %zu", known, &i->count) != 2 || i->count > 10000000
-        || strcmp(known, token) != 0 || (i->numbers = calloc(i->count + 1, sizeof(double))) == NULL) {
-        refuse(i, file == NULL ? "%s cannot be opened: unpack the FMU whole" : known[0] == 0 ? "%s is no scene"
-               : "%s is not of this instantiation token: take the one of modelDescription.xml", path);
-        if (file != NULL) {
-            fclose(file);
-        }
-        return false;
-    }
-    i->id = FIRST_SUM;
-    size_t read = 0;
-    for (uint64_t bits; read < i->count && fscanf(file, "%" SCNx64, &bits) == 1; read++) {
-        memcpy(&i->numbers[read], &bits, sizeof bits);
-        i->id = (i->id ^ bits) * SUM_FACTOR;
-    }
-    fclose(file);
-    return read == i->count || refuse(i, "%s ends early: unpack the FMU again", path) == fmi3OK;
 }
 
-static axis_profile profile_at(double **at, double count)
+/* Read the token, how many numbers follow and their sum; then the bits of the numbers, each section behind its size. */
+static bool read_scene(Instance *i, const char *folder, const char *token)
 {
-    size_t n = (size_t)count;
-    axis_profile of = {.count = n, .period = (*at)[0], .starts = *at + 1, .values = *at + 1 + n, .rates = *at + 1 + 2 * n};
-    *at += 1 + 3 * n;
-    return of;
+    char path[4096], known[128] = "";
+    size_t count = 0, read = 0;
+    path_of(folder, path, path + sizeof path - 16);
+    FILE *file = fopen(path, "r");
+    if (file == NULL) {
+        return refuse(i, "%s cannot be opened: unpack the FMU whole", path) == fmi3OK;
+    }
+    bool is_of_token = fscanf(file, "%127s %zu %" SCNx64, known, &count, &i->id) == 3 && strcmp(known, token) == 0;
+    if (is_of_token && count < 10000000 && (i->numbers = calloc(count + 1, sizeof(double))) != NULL) {
+        for (uint64_t bits; read < count && fscanf(file, "%" SCNx64, &bits) == 1; read++) {
+            memcpy(&i->numbers[read], &bits, sizeof bits);
+        }
+    }
+    fclose(file);
+    bool is_whole = read > 0 && read == count && sum_of(i->numbers, count * sizeof(double)) == i->id;
+    if (!is_of_token || !is_whole) {
+        refuse(i, is_of_token ? "%s is damaged: unpack the FMU again"
+               : "%s is not of this instantiation token: take the one of modelDescription.xml", path);
+    }
+    return is_of_token && is_whole;
 }
 
 static bool take_scene(Instance *i)
 {
-    const double *n = i->numbers;
-    double whole = HEAD + START + 2 * COMMANDS;
-    for (size_t k = 0; i->count > HEAD && k < HEAD; k++) {
-        static const double sizes[HEAD] = {1, TUNED_ROW + 1, 5, 0, 3, 3, 3};
-        whole += n[k] >= 0.0 && n[k] < 1e7 && n[k] == floor(n[k]) ? sizes[k] * n[k] : INFINITY;
+    double *at = i->numbers;
+    for (size_t k = 0; k < SECTIONS; k++, at += i->size[k - 1]) {
+        i->size[k] = (size_t)*at++;
+        i->section[k] = at;
     }
-    if (i->count <= HEAD || whole != (double)i->count || n[1] > MOST_TUNED) {
-        return false;
-    }
-    i->parameter_count = (size_t)n[0];
-    i->tuned_count = (size_t)n[1];
-    i->sinusoid_count = (size_t)n[2];
-    double *at = i->numbers + HEAD;
-    i->parameters = at;
-    i->tuned_rows = at + i->parameter_count;
-    for (size_t k = 0; k < i->tuned_count; k++) {
-        double field = i->tuned_rows[k * TUNED_ROW], other = i->tuned_rows[k * TUNED_ROW + 1];
-        if (!(field >= 0.0 && field <= AXIS_PARAMETERS && other >= 0.0 && other < AXIS_PARAMETERS)
-            || i->parameter_count <= AXIS_PARAMETERS) {
-            return false;
-        }
-    }
-    at = i->tuned_rows + i->tuned_count * TUNED_ROW;
     i->first.phase = NEW;
-    memcpy(i->first.tuned, at, i->tuned_count * sizeof(double));
-    at += i->tuned_count;
-    i->initial = (axis_start_state){at[0], at[1], at[2], at[3], at[4]};
-    memcpy(i->first.command, at + START, sizeof i->first.command);
-    at += START + COMMANDS;
-    i->sinusoids = at;
-    at += 5 * i->sinusoid_count;
-    i->inputs.normal_varies = n[3] != 0.0;
-    i->command_count = i->inputs.normal_varies ? COMMANDS : COMMANDS - 1;
-    i->inputs.drive = profile_at(&at, n[4]);
-    i->inputs.force = profile_at(&at, n[5]);
-    i->inputs.normal = profile_at(&at, n[6]);
-    i->scratch = calloc(i->parameter_count + 1, sizeof(double));
-    i->rows = calloc(i->sinusoid_count + 1, sizeof *i->rows);
+    for (double *row = i->section[VARIABLES]; row < i->section[PARAMETERS] - 1; row += sizeof(Variable) / sizeof *row) {
+        const Variable *one = (const Variable *)row;
+        i->variable[(size_t)one->reference] = one;
+        i->first.value[(size_t)one->reference] = one->start;
+    }
+    i->own = i->first;
+    i->scratch = calloc(i->size[PARAMETERS], sizeof(double));
+    i->rows = calloc(i->size[SINUSOIDS] + 1, sizeof(double));
     return i->scratch != NULL && i->rows != NULL;
 }
 
 /* The axis */
 
-static void note_events(Instance *i)
+/* Count the events that a call brought; return its code. */
+static int noted(Instance *i, int code)
 {
     for (size_t k = 0; k < axis_event_count(i->axis); k++) {
         axis_event event = axis_event_at(i->axis, k);
-        i->own.event_count++;
-        i->own.event_time = i->own.start + (event.second + event.fraction);
-        i->own.event_kind = event.kind;
+        i->own.value[COUNT]++;
+        i->own.value[EVENT_TIME] = i->own.start + (event.second + event.fraction);
+        i->own.value[EVENT_KIND] = event.kind;
     }
-    i->has_sample = false;
+    i->own.has_sample = 0.0;
+    return code;
 }
 
 /* The parameters as they are tuned; a factor on all friction stands behind their fields. */
-static const double *tuned_parameters(Instance *i, const double *tuned)
+static const double *tuned_parameters(Instance *i, const double *value)
 {
     double *p = i->scratch;
-    memcpy(p, i->parameters, i->parameter_count * sizeof(double));
-    for (size_t k = 0; k < i->tuned_count; k++) {
-        const double *row = i->tuned_rows + k * TUNED_ROW, start = i->first.tuned[k];
-        if (row[0] < AXIS_PARAMETERS && tuned[k] != start) {
-            p[(size_t)row[0]] = p[(size_t)row[1]] = tuned[k];
-        } else if (tuned[k] != start) {
-            static const int scaled[] = {AXIS_STATIC_INITIAL, AXIS_STATIC_LIMIT, AXIS_BACKWARD_INITIAL,
-                                         AXIS_BACKWARD_LIMIT, AXIS_END_SLOPE};
-            for (size_t j = 0; j < sizeof scaled / sizeof *scaled; j++) {
-                p[scaled[j]] *= tuned[k] / start;
-            }
-            for (size_t j = AXIS_PARAMETERS; j + 6 <= i->parameter_count; j += 6) {
-                p[j + 2] *= tuned[k] / start;    /* mu_k, and its slope */
-                p[j + 4] *= tuned[k] / start;
-            }
+    memcpy(p, i->section[PARAMETERS], i->size[PARAMETERS] * sizeof(double));
+    for (size_t ref = 0; ref < VALUES; ref++) {
+        const Variable *one = i->variable[ref];
+        if (one == NULL || one->is != TUNED || value[ref] == one->start) {
+            continue;
+        }
+        if (one->field == AXIS_PARAMETERS) {
+            axis_scale_friction(p, i->size[PARAMETERS], value[ref] / one->start);
+        } else {
+            p[(size_t)one->field] = p[(size_t)one->other] = value[ref];
         }
     }
     return p;
@@ -229,91 +221,86 @@ static const double *tuned_parameters(Instance *i, const double *tuned)
 
 static axis_inputs inputs_in_force(Instance *i)
 {
-    const double *is = i->own.is_commanded;
-    axis_inputs inputs = i->inputs;
-    axis_profile *profiles[COMMANDS] = {&inputs.drive, &inputs.force, &inputs.normal};
-    for (size_t k = 0; k < COMMANDS; k++) {
-        if (is[k] != 0.0) {
-            *profiles[k] = (axis_profile){.value = i->own.command[k]};
+    const double *is = i->own.is_commanded + DRIVE_COMMAND;
+    axis_inputs inputs = {.normal_varies = i->size[NORMAL] > 0, .sinusoids = i->rows};
+    axis_profile *const profiles[] = {&inputs.drive, &inputs.force, &inputs.normal};
+    for (size_t k = 0; k < sizeof profiles / sizeof *profiles; k++) {
+        const double *of = i->section[DRIVE + k];
+        size_t n = i->size[DRIVE + k] / 3;
+        *profiles[k] = is[k] != 0.0 ? (axis_profile){.value = i->own.value[DRIVE_COMMAND + k]}
+            : (axis_profile){.count = n, .period = of[0], .starts = of + 1, .values = of + 1 + n, .rates = of + 1 + 2 * n};
+    }
+    const axis_sinusoid *all = (const axis_sinusoid *)i->section[SINUSOIDS], *end = all + i->size[SINUSOIDS] / 5;
+    for (const axis_sinusoid *one = all; one < end; one++) {    /* those of inputs that are not commanded */
+        if ((one->v == 0.0 || is[0] == 0.0) && (one->f == 0.0 || is[1] == 0.0) && (one->n == 0.0 || is[2] == 0.0)) {
+            i->rows[inputs.sinusoid_count++] = *one;
         }
     }
-    for (size_t k = 0; k < i->sinusoid_count; k++) {    /* those of inputs that are not commanded */
-        const double *n = i->sinusoids + 5 * k;
-        if (!((n[2] != 0.0 && is[0] != 0.0) || (n[3] != 0.0 && is[1] != 0.0) || (n[4] != 0.0 && is[2] != 0.0))) {
-            i->rows[inputs.sinusoid_count++] = (axis_sinusoid){n[0], n[1], n[2], n[3], n[4]};
-        }
-    }
-    inputs.sinusoids = i->rows;
     return inputs;
 }
 
-static int start_axis(Instance *i)
+/* Return an axis that begins with what is set now; NULL and a code where there is none. */
+static axis *started(Instance *i, int *code)
 {
-    int code;
     axis_inputs inputs = inputs_in_force(i);
-    axis *made = axis_new(tuned_parameters(i, i->own.tuned), i->parameter_count, i->sinusoid_count, 4, false, &code);
-    if (made != NULL && (code = axis_start(made, &i->initial, &inputs)) != AXIS_OK) {
+    size_t count = i->size[PARAMETERS], sinusoids = i->size[SINUSOIDS] / 5;
+    axis *made = axis_new(tuned_parameters(i, i->own.value), count, sinusoids, 4, false, code);
+    if (made != NULL && (*code = axis_start(made, (const axis_start_state *)i->section[INITIAL], &inputs)) != AXIS_OK) {
         axis_free(made);
+        made = NULL;
     }
-    if (code == AXIS_OK) {
-        axis_free(i->axis);
-        i->axis = made;
-    }
-    return code;
+    return made;
 }
 
 /* Let what was set act from the present time on, before anything is read or goes on. */
 static bool obey(Instance *i)
 {
     int code = AXIS_OK;
-    if (i->own.is_started == 0.0) {
-        code = start_axis(i);
-        i->own.is_started = code == AXIS_OK;
-        i->own.event_count = i->own.event_time = i->own.has_new_inputs = i->own.has_new_parameters = 0.0;
-        i->own.event_kind = -1.0;
-        if (code == AXIS_OK) {
-            note_events(i);
-        }
+    Own *own = &i->own;
+    axis *made = own->is_started == 0.0 ? started(i, &code) : NULL;
+    if (made != NULL) {
+        axis_free(i->axis);
+        i->axis = made;
+        own->is_started = 1.0;
+        own->value[COUNT] = own->value[EVENT_TIME] = own->has_new_inputs = own->has_new_parameters = 0.0;
+        own->value[EVENT_KIND] = -1.0;
+        noted(i, code);
     }
-    if (code == AXIS_OK && i->own.has_new_inputs != 0.0) {
+    if (code == AXIS_OK && own->has_new_inputs != 0.0) {
         axis_inputs inputs = inputs_in_force(i);
-        code = axis_set_inputs(i->axis, &inputs);
-        i->own.has_new_inputs = 0.0;
-        note_events(i);
+        code = noted(i, axis_set_inputs(i->axis, &inputs));
+        own->has_new_inputs = 0.0;
     }
-    if (code == AXIS_OK && i->own.has_new_parameters != 0.0) {
-        code = axis_set_parameters(i->axis, tuned_parameters(i, i->own.tuned), i->parameter_count);
-        i->own.has_new_parameters = 0.0;
-        note_events(i);
+    if (code == AXIS_OK && own->has_new_parameters != 0.0) {
+        code = noted(i, axis_set_parameters(i->axis, tuned_parameters(i, own->value), i->size[PARAMETERS]));
+        own->has_new_parameters = 0.0;
     }
-    return code == AXIS_OK || refuse(i, "%s", axis_text(code)) == fmi3OK;
+    return done(i, code) == fmi3OK;
 }
 
 /* Values */
 
-static bool get(Instance *i, unsigned ref, bool whole, double *out)
+static bool get(Instance *i, unsigned ref, bool is_whole, double *out)
 {
-    size_t tuned = ref - FIRST_TUNED, command = ref - FIRST_COMMAND, output = ref - FIRST_OUTPUT;
-    bool is_output = output <= LAST_OUTPUT - FIRST_OUTPUT, is_event = ref >= COUNT && ref <= KIND;
-    if (whole != (ref == COUNT || ref == KIND || output < 2)
-        || !(ref == TIME || command < i->command_count || is_output || is_event || tuned < i->tuned_count)) {
+    const Variable *one = ref < VALUES ? i->variable[ref] : NULL;
+    if (one == NULL || is_whole != (one->is == WHOLE)) {
         return refuse(i, "value reference %u is no %s of this FMU: take those of modelDescription.xml", ref,
-                      whole ? "whole number" : "real number") == fmi3OK;
+                      is_whole ? "whole number" : "real number") == fmi3OK;
     }
-    if (command < COMMANDS || tuned < i->tuned_count) {
-        *out = tuned < i->tuned_count ? i->own.tuned[tuned] : i->own.command[command];
-        return true;
-    }
-    if (!obey(i)) {
+    if (one->is < COMMAND && !obey(i)) {
         return false;
     }
-    if (is_output && !i->has_sample) {
-        int code = axis_sample(i->axis, &i->sample);
-        i->has_sample = code == AXIS_OK || refuse(i, "%s", axis_text(code)) == fmi3OK;
+    if (ref >= MODE && ref <= REST_TIME && i->own.has_sample == 0.0) {
+        axis_sample_row row;
+        int code = axis_sample(i->axis, &row);
+        if (done(i, code) != fmi3OK) {
+            return false;
+        }
+        memcpy(i->own.value + MODE, &row.mode, (REST_TIME - MODE + 1) * sizeof row.mode);
+        i->own.has_sample = 1.0;
     }
-    *out = is_output ? ((const double *)&i->sample)[MODE + output] : ref == TIME ? i->own.start + axis_time(i->axis)
-        : ref == COUNT ? i->own.event_count : ref == EVENT_TIME ? i->own.event_time : i->own.event_kind;
-    return !is_output || i->has_sample;
+    *out = ref == TIME ? i->own.start + axis_time(i->axis) : i->own.value[ref];
+    return true;
 }
 
 /* Take all values or, where one is wrong, none. */
@@ -321,27 +308,24 @@ static int set(Instance *i, const uint32_t *refs, size_t n, const double *values
 {
     Own next = i->own;
     for (size_t k = 0; k < n; k++) {
-        size_t tuned = refs[k] - FIRST_TUNED, command = refs[k] - FIRST_COMMAND;
-        bool is_command = command < i->command_count;
-        if (!is_command && tuned >= i->tuned_count) {
+        const Variable *one = refs[k] < VALUES ? i->variable[refs[k]] : NULL;
+        if (one == NULL || one->is < COMMAND) {
             return refuse(i, "value reference %u cannot be set: only inputs and parameters can", (unsigned)refs[k]);
         }
-        const double *row = i->tuned_rows + TUNED_ROW * (is_command ? 0 : tuned);
-        double low = is_command ? command == 2 ? 0.0 : -1e15 : row[2], high = is_command ? 1e15 : row[3];
-        if (!(values[k] >= low && values[k] <= high)) {
+        if (!(values[k] >= one->low && values[k] <= one->high)) {
             return refuse(i, "value reference %u is set to %g: allowed is %g to %g; what was set before stays",
-                          (unsigned)refs[k], values[k], low, high);
+                          (unsigned)refs[k], values[k], one->low, one->high);
         }
-        double *to = is_command ? &next.command[command] : &next.tuned[tuned], value = values[k] + 0.0;
-        if (!is_command && *to != value) {
+        double *to = &next.value[refs[k]], value = values[k] + 0.0;
+        if (one->is == TUNED && *to != value) {
             next.has_new_parameters = 1.0;
         }
-        if (is_command && (*to != value || next.is_commanded[command] == 0.0)) {
-            next.has_new_inputs = next.is_commanded[command] = 1.0;
+        if (one->is == COMMAND && (*to != value || next.is_commanded[refs[k]] == 0.0)) {
+            next.has_new_inputs = next.is_commanded[refs[k]] = 1.0;
         }
         *to = value;
     }
-    const double *p = tuned_parameters(i, next.tuned), *back = p + AXIS_PARAMETERS + 6 * (size_t)p[AXIS_BACKWARD_SEGMENT];
+    const double *p = tuned_parameters(i, next.value), *back = p + AXIS_PARAMETERS + 6 * (size_t)p[AXIS_BACKWARD_SEGMENT];
     bool grows = p[AXIS_STATIC_LAW] != 0.0;
     if (p[AXIS_PARAMETERS + 2] > p[AXIS_STATIC_INITIAL] || back[2] > p[AXIS_BACKWARD_INITIAL]
         || (grows && p[AXIS_STATIC_INITIAL] > p[AXIS_STATIC_LIMIT])
@@ -350,7 +334,9 @@ static int set(Instance *i, const uint32_t *refs, size_t n, const double *values
                       "what was set before stays");
     }
     next.is_started = next.phase == NEW || next.phase == STARTING ? 0.0 : next.is_started;
-    i->has_sample = i->has_sample && next.is_started != 0.0 && next.has_new_inputs + next.has_new_parameters == 0.0;
+    if (next.is_started + next.has_new_inputs + next.has_new_parameters != 1.0) {
+        next.has_sample = 0.0;
+    }
     i->own = next;
     return fmi3OK;
 }
@@ -360,7 +346,7 @@ static int do_step(Instance *i, double time, double step, bool *has_event, bool 
     if (!is_in(i, STEP, "a step") || !obey(i)) {
         return fmi3Error;
     }
-    double now = i->own.start + axis_time(i->axis), to = time + step - i->own.start, count = i->own.event_count;
+    double now = i->own.start + axis_time(i->axis), to = time + step - i->own.start, count = i->own.value[COUNT];
     if (!(fabs(time - now) <= 1e-12 * (1.0 + fabs(now)))) {
         return refuse(i, "a step from %.17g s: the FMU is at %.17g s, and steps follow each other", time, now);
     }
@@ -370,8 +356,7 @@ static int do_step(Instance *i, double time, double step, bool *has_event, bool 
     int code = AXIS_OK;
     bool has_one = to >= axis_time(i->axis);
     while (code == AXIS_OK && has_one) {
-        code = axis_advance_to_event(i->axis, floor(to), to - floor(to));
-        note_events(i);
+        code = noted(i, axis_advance_to_event(i->axis, floor(to), to - floor(to)));
         has_one = axis_event_count(i->axis) > 0;
         if (i->stops && has_one) {
             break;
@@ -379,69 +364,57 @@ static int do_step(Instance *i, double time, double step, bool *has_event, bool 
     }
     *reached = i->own.start + axis_time(i->axis);
     *is_early = i->stops && has_one && *reached < time + step;
-    *has_event = i->has_event_mode && i->own.event_count > count;
-    return code == AXIS_OK ? fmi3OK : refuse(i, "at %.17g s: %s", *reached, axis_text(code));
+    *has_event = i->has_event_mode && i->own.value[COUNT] > count;
+    return done(i, code);
 }
 
-/* States: the scene, a sum of what follows, what is beside the axis, the numbers of the axis */
-
-enum { OWN = 2, NUMBERS = OWN + sizeof(Own) / sizeof(uint64_t) };
+/* States */
 
 static size_t state_size(Instance *i)
 {
-    return (NUMBERS + axis_state_size(i->axis)) * sizeof(uint64_t);
+    return sizeof(Saved) + axis_state_size(i->axis) * sizeof(double);
 }
 
-static uint64_t sum_of(const uint64_t *state, size_t size)
+static uint64_t sum_of_state(Instance *i, const Saved *state)
 {
-    uint64_t sum = FIRST_SUM;
-    for (size_t k = OWN; k < size / sizeof *state; k++) {
-        sum = (sum ^ state[k]) * SUM_FACTOR;
-    }
-    return sum;
+    return sum_of(&state->own, state_size(i) - offsetof(Saved, own));
 }
 
-static int get_state(Instance *i, void **out)
+static int get_state(Instance *i, Saved **out)
 {
     if (!obey(i)) {
         return fmi3Error;
     }
-    uint64_t *state = *out != NULL ? *out : calloc(1, state_size(i));
-    if (state == NULL || (*out != NULL && state[0] != i->id)) {
+    Saved *state = *out != NULL ? *out : calloc(1, state_size(i));
+    if (state == NULL || (*out != NULL && state->id != i->id)) {
         return refuse(i, state == NULL ? "there is no memory for a state" : "the state to write over is of another scene");
     }
-    state[0] = i->id;
-    memcpy(state + OWN, &i->own, sizeof(Own));
-    axis_get_state(i->axis, (double *)(state + NUMBERS));
-    state[1] = sum_of(state, state_size(i));
+    state->id = i->id;
+    state->own = i->own;
+    axis_get_state(i->axis, state->numbers);
+    state->sum = sum_of_state(i, state);
     *out = state;
     return fmi3OK;
 }
 
-static int set_state(Instance *i, const uint64_t *state)
+static int set_state(Instance *i, const Saved *state)
 {
-    if (state == NULL || state[0] != i->id) {
+    if (state == NULL || state->id != i->id) {
         return refuse(i, "the state is of another scene: take one of an FMU of the same export");
     }
-    Own before = i->own;
-    axis *axis_before = i->axis;
-    i->axis = NULL;
-    memcpy(&i->own, state + OWN, sizeof(Own));
-    int code = start_axis(i);
+    int code;
+    Instance next = *i;
+    next.own = state->own;
+    next.axis = started(&next, &code);
     if (code == AXIS_OK) {
-        code = axis_set_state(i->axis, (const double *)(state + NUMBERS), axis_state_size(i->axis));
+        code = axis_set_state(next.axis, state->numbers, axis_state_size(next.axis));
     }
-    axis_free(code == AXIS_OK ? axis_before : i->axis);
-    if (code != AXIS_OK) {
-        i->axis = axis_before;
-        i->own = before;
-        return refuse(i, "%s", axis_text(code));
+    axis_free(code == AXIS_OK ? i->axis : next.axis);
+    if (code == AXIS_OK) {
+        *i = next;
+        i->own.phase = i->own.phase == EVENT && !i->has_event_mode ? STEP : i->own.phase;
     }
-    if (i->own.phase == EVENT && !i->has_event_mode) {
-        i->own.phase = STEP;
-    }
-    i->has_sample = false;
-    return fmi3OK;
+    return done(i, code);
 }
 
 static int free_state(void **state)
@@ -453,9 +426,9 @@ static int free_state(void **state)
     return fmi3OK;
 }
 
-static int write_state(Instance *i, const uint64_t *state, void *out, size_t size)
+static int write_state(Instance *i, const Saved *state, void *out, size_t size)
 {
-    if (state == NULL || state[0] != i->id || size != state_size(i)) {
+    if (state == NULL || state->id != i->id || size != state_size(i)) {
         return refuse(i, "the state is of another scene, or has not this size");
     }
     memcpy(out, state, size);
@@ -464,11 +437,11 @@ static int write_state(Instance *i, const uint64_t *state, void *out, size_t siz
 
 static int read_state(Instance *i, const void *bytes, size_t size, void **out)
 {
-    uint64_t *state = size == state_size(i) ? malloc(size) : NULL;
+    Saved *state = size == state_size(i) ? malloc(size) : NULL;
     if (state != NULL) {
         memcpy(state, bytes, size);
     }
-    if (state == NULL || state[0] != i->id || state[1] != sum_of(state, size)) {
+    if (state == NULL || state->id != i->id || state->sum != sum_of_state(i, state)) {
         free(state);
         return refuse(i, "the bytes are no state of this scene, or were changed");
     }
@@ -491,20 +464,15 @@ static void free_instance(Instance *i)
 
 static Instance *instantiate(Instance given, const char *name, const char *token, const char *folder)
 {
+    int code;
     Instance *i = malloc(sizeof *i);
     if (i == NULL) {
         return NULL;
     }
     *i = given;
     snprintf(i->name, sizeof i->name, "%s", name == NULL ? "" : name);
-    if (folder == NULL || token == NULL || !read_numbers(i, folder, token)) {
-        free_instance(i);
-        return NULL;
-    }
-    bool is_whole = take_scene(i);
-    i->own = i->first;
-    if (!is_whole || start_axis(i) != AXIS_OK) {
-        refuse(i, "resources/axis.txt is damaged: unpack the FMU again");
+    if (folder == NULL || token == NULL || !read_scene(i, folder, token) || !take_scene(i)
+        || (i->axis = started(i, &code)) == NULL) {
         free_instance(i);
         return NULL;
     }
@@ -533,7 +501,6 @@ static int begin(Instance *i, double start)
 static int reset(Instance *i)
 {
     i->own = i->first;
-    i->has_sample = false;
     return fmi3OK;
 }
 
@@ -542,46 +509,63 @@ static int absent(Instance *i, size_t n, const char *what)
     return n == 0 ? fmi3OK : refuse(i, "this FMU has no %s", what);
 }
 
+/* What both versions have */
+
+#define BOTH(in_3, in_2, given, what) \
+    EXPORT fmi3Status fmi3##in_3 given { return what; } \
+    EXPORT fmi2Status fmi2##in_2 given { return what; }
+BOTH(Reset, Reset, (void *c), reset(c))
+BOTH(GetFMUState, GetFMUstate, (void *c, void **state), get_state(c, (Saved **)state))
+BOTH(SetFMUState, SetFMUstate, (void *c, void *state), set_state(c, state))
+BOTH(FreeFMUState, FreeFMUstate, (void *c, void **state), free_state(state))
+BOTH(SerializedFMUStateSize, SerializedFMUstateSize, (void *c, void *state, size_t *size), (*size = state_size(c), fmi3OK))
+EXPORT const char *fmi3GetVersion(void) { return "3.0"; }
+EXPORT const char *fmi2GetVersion(void) { return "2.0"; }
+EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
+EXPORT void fmi3FreeInstance(void *c) { free_instance(c); }
+EXPORT void fmi2FreeInstance(void *c) { free_instance(c); }
+
+#define GETTER(type, is_whole, count, head) EXPORT head \
+{ \
+    double value; \
+    for (size_t k = 0; k < n; k++) { \
+        if (count != n || !get(c, refs[k], is_whole, &value)) { \
+            return 3; /* an error */ \
+        } \
+        out[k] = (type)value; \
+    } \
+    return 0; \
+}
+GETTER(double, false, m, fmi3Status fmi3GetFloat64(void *c, refs_3 refs, size_t n, double out[], size_t m))
+GETTER(int64_t, true, m, fmi3Status fmi3GetInt64(void *c, refs_3 refs, size_t n, int64_t out[], size_t m))
+GETTER(double, false, n, fmi2Status fmi2GetReal(void *c, refs_2 refs, size_t n, double out[]))
+GETTER(int, true, n, fmi2Status fmi2GetInteger(void *c, refs_2 refs, size_t n, int out[]))
+
 /* FMI 3.0 */
 
-EXPORT const char *fmi3GetVersion(void) { return "3.0"; }
+#define IN_3(name, given, what) EXPORT fmi3Status fmi3##name given { return what; }
+IN_3(SetDebugLogging, (void *c, bool on, size_t n, const char *const categories[]), fmi3OK)
+IN_3(EnterInitializationMode, (void *c, bool has_tolerance, double tolerance, double start, bool stops, double stop),
+     begin(c, start))
+IN_3(ExitInitializationMode, (void *c),
+     go(c, STARTING, ((Instance *)c)->has_event_mode ? EVENT : STEP, "the end of initialization mode"))
+IN_3(EnterEventMode, (void *c), ((Instance *)c)->has_event_mode ? go(c, STEP, EVENT, "event mode")
+     : refuse(c, "event mode was not asked for: instantiate with eventModeUsed"))
+IN_3(EnterStepMode, (void *c), go(c, EVENT, STEP, "step mode"))
+IN_3(Terminate, (void *c), go(c, EVENT | STEP, ENDED, "the end"))
+IN_3(EvaluateDiscreteStates, (void *c), is_in(c, EVENT | STARTING, "this") ? fmi3OK : fmi3Error)
+IN_3(SetFloat64, (void *c, refs_3 refs, size_t n, const double values[], size_t m),
+     m == n && is_in(c, ANY - ENDED, "a set value") ? set(c, refs, n, values) : fmi3Error)
+IN_3(SerializeFMUState, (void *c, void *state, uint8_t out[], size_t size), write_state(c, state, out, size))
+IN_3(DeserializeFMUState, (void *c, const uint8_t bytes[], size_t size, void **state), read_state(c, bytes, size, state))
 
 EXPORT void *fmi3InstantiateCoSimulation(
     const char *name, const char *token, const char *folder, bool visible, bool logging, bool event_mode, bool early,
     const uint32_t wanted[], size_t count, void *environment, fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback f)
 {
-    (void)visible, (void)logging, (void)wanted, (void)count, (void)f;
     return instantiate((Instance){.environment = environment, .log_3 = log, .has_event_mode = event_mode, .stops = early},
                        name, token, folder);
 }
-
-EXPORT void fmi3FreeInstance(void *c) { free_instance(c); }
-
-EXPORT fmi3Status fmi3SetDebugLogging(void *c, bool on, size_t n, const char *const categories[])
-{
-    return (void)c, (void)on, (void)n, (void)categories, fmi3OK;
-}
-
-EXPORT fmi3Status fmi3EnterInitializationMode(void *c, bool has_tolerance, double tolerance, double start, bool stops,
-                                              double stop)
-{
-    return (void)has_tolerance, (void)tolerance, (void)stops, (void)stop, begin(c, start);
-}
-
-EXPORT fmi3Status fmi3ExitInitializationMode(void *c)
-{
-    return go(c, STARTING, ((Instance *)c)->has_event_mode ? EVENT : STEP, "the end of initialization mode");
-}
-
-EXPORT fmi3Status fmi3EnterEventMode(void *c)
-{
-    return ((Instance *)c)->has_event_mode ? go(c, STEP, EVENT, "event mode")
-        : refuse(c, "event mode was not asked for: instantiate with eventModeUsed") ;
-}
-
-EXPORT fmi3Status fmi3EnterStepMode(void *c) { return go(c, EVENT, STEP, "step mode"); }
-EXPORT fmi3Status fmi3Terminate(void *c) { return go(c, EVENT | STEP, ENDED, "the end"); }
-EXPORT fmi3Status fmi3Reset(void *c) { return reset(c); }
 
 EXPORT fmi3Status fmi3UpdateDiscreteStates(void *c, bool *again, bool *ends, bool *nominals, bool *values, bool *has_next,
                                            double *next)
@@ -593,91 +577,33 @@ EXPORT fmi3Status fmi3UpdateDiscreteStates(void *c, bool *again, bool *ends, boo
         return fmi3Error;
     }
     double now = axis_time(i->axis);
-    int code = axis_advance_to_event(i->axis, floor(now), now - floor(now));   /* one more at the same instant */
-    note_events(i);
+    int code = noted(i, axis_advance_to_event(i->axis, floor(now), now - floor(now)));   /* one more at the same instant */
     *again = axis_event_count(i->axis) > 0;
-    return code == AXIS_OK ? fmi3OK : refuse(i, "%s", axis_text(code));
+    return done(i, code);
 }
 
 EXPORT fmi3Status fmi3DoStep(void *c, double time, double step, bool no_state, bool *event, bool *ends, bool *early,
                              double *reached)
 {
-    (void)no_state;
     *event = *ends = *early = false;
     *reached = time;
     return do_step(c, time, step, event, early, reached);
-}
-
-EXPORT fmi3Status fmi3GetFloat64(void *c, refs_3 refs, size_t n, double out[], size_t m)
-{
-    for (size_t k = 0; k < n; k++) {
-        if (m != n || !get(c, refs[k], false, &out[k])) {
-            return fmi3Error;
-        }
-    }
-    return fmi3OK;
-}
-
-EXPORT fmi3Status fmi3GetInt64(void *c, refs_3 refs, size_t n, int64_t out[], size_t m)
-{
-    double value;
-    for (size_t k = 0; k < n; k++) {
-        if (m != n || !get(c, refs[k], true, &value)) {
-            return fmi3Error;
-        }
-        out[k] = (int64_t)value;
-    }
-    return fmi3OK;
-}
-
-EXPORT fmi3Status fmi3SetFloat64(void *c, refs_3 refs, size_t n, const double values[], size_t m)
-{
-    return m == n && is_in(c, ANY - ENDED, "a set value") ? set(c, refs, n, values) : fmi3Error;
-}
-
-EXPORT fmi3Status fmi3GetFMUState(void *c, void **state) { return get_state(c, state); }
-EXPORT fmi3Status fmi3SetFMUState(void *c, void *state) { return set_state(c, state); }
-EXPORT fmi3Status fmi3FreeFMUState(void *c, void **state) { return (void)c, free_state(state); }
-
-EXPORT fmi3Status fmi3SerializedFMUStateSize(void *c, void *state, size_t *size)
-{
-    return (void)state, *size = state_size(c), fmi3OK;
-}
-
-EXPORT fmi3Status fmi3SerializeFMUState(void *c, void *state, uint8_t out[], size_t size)
-{
-    return write_state(c, state, out, size);
-}
-
-EXPORT fmi3Status fmi3DeserializeFMUState(void *c, const uint8_t bytes[], size_t size, void **state)
-{
-    return read_state(c, bytes, size, state);
 }
 
 /* FMI 3.0 wants each function to be there, also of what an FMU has not. */
 
 #define GET_ABSENT(kind, type) \
     EXPORT fmi3Status fmi3Get##kind(void *c, refs_3 r, size_t n, type v[], size_t m) \
-    { return (void)r, (void)v, (void)m, absent(c, n, "readable " #kind); }
+    { return absent(c, n, "readable " #kind); }
 #define SET_ABSENT(kind, type) \
     EXPORT fmi3Status fmi3Set##kind(void *c, refs_3 r, size_t n, const type v[], size_t m) \
-    { return (void)r, (void)v, (void)m, absent(c, n, "settable " #kind); }
+    { return absent(c, n, "settable " #kind); }
 #define ABSENT(kind, type) GET_ABSENT(kind, type) SET_ABSENT(kind, type)
-ABSENT(Float32, float)
-ABSENT(Int8, int8_t)
-ABSENT(UInt8, uint8_t)
-ABSENT(Int16, int16_t)
-ABSENT(UInt16, uint16_t)
-ABSENT(Int32, int32_t)
-ABSENT(UInt32, uint32_t)
-SET_ABSENT(Int64, int64_t)
-ABSENT(UInt64, uint64_t)
-ABSENT(Boolean, bool)
 typedef const char *text;
-ABSENT(String, text)
-#define ABSENT_FUNCTION(name, ...) \
-    EXPORT fmi3Status fmi3##name(void *c, __VA_ARGS__) { return absent(c, 1, #name); }
-#pragma GCC diagnostic ignored "-Wunused-parameter"
+ABSENT(Float32, float) ABSENT(Boolean, bool) ABSENT(String, text)
+ABSENT(Int8, int8_t) ABSENT(Int16, int16_t) ABSENT(Int32, int32_t) SET_ABSENT(Int64, int64_t)
+ABSENT(UInt8, uint8_t) ABSENT(UInt16, uint16_t) ABSENT(UInt32, uint32_t) ABSENT(UInt64, uint64_t)
+#define ABSENT_FUNCTION(name, ...) IN_3(name, (void *c, __VA_ARGS__), absent(c, 1, #name))
 typedef const uint8_t *binary;
 ABSENT_FUNCTION(GetBinary, refs_3 r, size_t n, size_t s[], binary v[], size_t m)
 ABSENT_FUNCTION(SetBinary, refs_3 r, size_t n, const size_t s[], const binary v[], size_t m)
@@ -706,10 +632,9 @@ ABSENT_FUNCTION(GetContinuousStates, double v[], size_t n)
 ABSENT_FUNCTION(GetNominalsOfContinuousStates, double v[], size_t n)
 ABSENT_FUNCTION(GetNumberOfEventIndicators, size_t *n)
 ABSENT_FUNCTION(GetNumberOfContinuousStates, size_t *n)
-EXPORT fmi3Status fmi3EnterContinuousTimeMode(void *c) { return absent(c, 1, "model exchange"); }
-EXPORT fmi3Status fmi3EnterConfigurationMode(void *c) { return absent(c, 1, "structural parameters"); }
-EXPORT fmi3Status fmi3ExitConfigurationMode(void *c) { return absent(c, 1, "structural parameters"); }
-EXPORT fmi3Status fmi3EvaluateDiscreteStates(void *c) { return is_in(c, EVENT | STARTING, "this") ? fmi3OK : fmi3Error; }
+IN_3(EnterContinuousTimeMode, (void *c), absent(c, 1, "model exchange"))
+IN_3(EnterConfigurationMode, (void *c), absent(c, 1, "structural parameters"))
+IN_3(ExitConfigurationMode, (void *c), absent(c, 1, "structural parameters"))
 
 EXPORT void *fmi3InstantiateModelExchange(const char *n, const char *t, const char *f, bool v, bool l, void *e,
                                           fmi3LogMessageCallback log)
@@ -726,8 +651,15 @@ EXPORT void *fmi3InstantiateScheduledExecution(
 
 /* FMI 2.0 */
 
-EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }
-EXPORT const char *fmi2GetVersion(void) { return "2.0"; }
+#define IN_2(name, given, what) EXPORT fmi2Status fmi2##name given { return what; }
+IN_2(SetDebugLogging, (void *c, int on, size_t n, const char *const categories[]), fmi2OK)
+IN_2(EnterInitializationMode, (void *c), begin(c, ((Instance *)c)->own.start))
+IN_2(ExitInitializationMode, (void *c), go(c, STARTING, STEP, "the end of initialization mode"))
+IN_2(Terminate, (void *c), go(c, STEP, ENDED, "the end"))
+IN_2(SetReal, (void *c, refs_2 r, size_t n, const double v[]), (fmi2Status)fmi3SetFloat64(c, r, n, v, n))
+IN_2(SerializeFMUstate, (void *c, void *state, char out[], size_t size), write_state(c, state, out, size))
+IN_2(DeSerializeFMUstate, (void *c, const char bytes[], size_t size, void **state), read_state(c, bytes, size, state))
+IN_2(CancelStep, (void *c), absent(c, 1, "steps in the background"))
 
 EXPORT void *fmi2Instantiate(const char *name, fmi2Type type, const char *token, const char *folder,
                              const fmi2CallbackFunctions *functions, int visible, int logging)
@@ -737,33 +669,10 @@ EXPORT void *fmi2Instantiate(const char *name, fmi2Type type, const char *token,
         : (refuse(&given, "this FMU is for co-simulation alone"), NULL);
 }
 
-EXPORT void fmi2FreeInstance(void *c) { free_instance(c); }
-EXPORT fmi2Status fmi2SetDebugLogging(void *c, int on, size_t n, const char *const categories[]) { return fmi2OK; }
-
 EXPORT fmi2Status fmi2SetupExperiment(void *c, int has_tolerance, double tolerance, double start, int stops, double stop)
 {
     return is_in(c, NEW, "the set-up") && fabs(start) < 1e15 ? ((Instance *)c)->own.start = start, fmi2OK
         : (fmi2Status)refuse(c, "a start at %g s: it has to be finite, and come first", start);
-}
-
-EXPORT fmi2Status fmi2EnterInitializationMode(void *c) { return begin(c, ((Instance *)c)->own.start); }
-EXPORT fmi2Status fmi2ExitInitializationMode(void *c) { return go(c, STARTING, STEP, "the end of initialization mode"); }
-EXPORT fmi2Status fmi2Terminate(void *c) { return go(c, STEP, ENDED, "the end"); }
-EXPORT fmi2Status fmi2Reset(void *c) { return reset(c); }
-
-EXPORT fmi2Status fmi2GetReal(void *c, refs_2 refs, size_t n, double out[]) { return (fmi2Status)fmi3GetFloat64(c, refs, n, out, n); }
-EXPORT fmi2Status fmi2SetReal(void *c, refs_2 r, size_t n, const double v[]) { return (fmi2Status)fmi3SetFloat64(c, r, n, v, n); }
-
-EXPORT fmi2Status fmi2GetInteger(void *c, refs_2 refs, size_t n, int out[])
-{
-    double value;
-    for (size_t k = 0; k < n; k++) {
-        if (!get(c, refs[k], true, &value)) {
-            return fmi2Error;
-        }
-        out[k] = (int)value;
-    }
-    return fmi2OK;
 }
 
 EXPORT fmi2Status fmi2DoStep(void *c, double time, double step, int no_state)
@@ -773,14 +682,7 @@ EXPORT fmi2Status fmi2DoStep(void *c, double time, double step, int no_state)
     return do_step(c, time, step, &has_event, &is_early, &reached);
 }
 
-EXPORT fmi2Status fmi2GetFMUstate(void *c, void **state) { return get_state(c, state); }
-EXPORT fmi2Status fmi2SetFMUstate(void *c, void *state) { return set_state(c, state); }
-EXPORT fmi2Status fmi2FreeFMUstate(void *c, void **state) { return free_state(state); }
-EXPORT fmi2Status fmi2SerializedFMUstateSize(void *c, void *state, size_t *n) { return *n = state_size(c), fmi2OK; }
-EXPORT fmi2Status fmi2SerializeFMUstate(void *c, void *s, char out[], size_t n) { return write_state(c, s, out, n); }
-EXPORT fmi2Status fmi2DeSerializeFMUstate(void *c, const char in[], size_t n, void **s) { return read_state(c, in, n, s); }
-
-#define ABSENT_2(name, ...) EXPORT fmi2Status fmi2##name(void *c, __VA_ARGS__) { return absent(c, 1, #name); }
+#define ABSENT_2(name, ...) IN_2(name, (void *c, __VA_ARGS__), absent(c, 1, #name))
 ABSENT_2(SetInteger, refs_2 r, size_t n, const int v[])
 ABSENT_2(GetBoolean, refs_2 r, size_t n, int v[])
 ABSENT_2(SetBoolean, refs_2 r, size_t n, const int v[])
@@ -794,4 +696,3 @@ ABSENT_2(GetRealStatus, fmi2StatusKind s, double *v)
 ABSENT_2(GetIntegerStatus, fmi2StatusKind s, int *v)
 ABSENT_2(GetBooleanStatus, fmi2StatusKind s, int *v)
 ABSENT_2(GetStringStatus, fmi2StatusKind s, text *v)
-EXPORT fmi2Status fmi2CancelStep(void *c) { return absent(c, 1, "steps in the background"); }

@@ -5,10 +5,10 @@
 import inspect
 import re
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from string import Template
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..axis import pack
 from ..axis.fields import names_of
@@ -26,6 +26,26 @@ NAMES = 'stickslip_axis.c', 'stickslip_axis.h', 'example.c'
 _HERE = Path(__file__).parent
 
 
+class SceneNumbers(NamedTuple):
+    """A scene as its numbers: of its axis, how it begins, its inputs, and their sinusoids in a row."""
+
+    parameters: Sequence[float]
+    initial: list[float]
+    profiles: dict[str, InputProfile | None]    # of drive, force and normal force
+    sinusoids: list[float]
+
+
+def numbers_of(scene: Scene) -> SceneNumbers:
+    """Return the numbers that a program outside of Python gets of a scene."""
+    load, initial = scene.normal_load, scene.initial
+    inputs = Inputs(scene.drive, scene.force) if load is None else LoadedInputs(scene.drive, scene.force, load)
+    return SceneNumbers(
+        pack(scene.axis),
+        [initial.position, initial.velocity, initial.rest_time, initial.stretch, initial.deflection],
+        {'drive': scene.drive, 'force': scene.force, 'normal': load and load.plus(scene.axis.normal_force)},
+        inputs.sinusoids())
+
+
 def c_files(scene: Scene, duration: float) -> dict[str, str]:
     """Return the texts of the three files, by name; raises InputError where plain Python runs."""
     if UNIT is None:
@@ -38,10 +58,10 @@ def c_files(scene: Scene, duration: float) -> dict[str, str]:
 
 
 def _header() -> dict[str, Any]:
-    notes = _notes(Parameters)
+    notes, of_segments = notes_of(Parameters), notes_of(Segment)
     return {
         'VERSION': __version__, 'SEGMENT_SIZE': len(SEGMENT_FIELDS),
-        'SEGMENTS': ';\n   '.join(f'{name}: {_notes(Segment)[name]}' for name in SEGMENT_FIELDS),
+        'SEGMENTS': ';\n   '.join(f'{name}: {of_segments[name]}' for name in SEGMENT_FIELDS),
         'PARAMETERS': '\n'.join(f'    AXIS_{name.upper()},   /* {notes[name]} */' for name in PARAMETER_FIELDS),
         'MODES': ''.join(f', AXIS_{mode.name}' for mode in sorted(Mode)[1:]),
         'KINDS': ''.join(f', AXIS_{"ARREST" if kind.name == "STICK" else kind.name}' for kind in sorted(EventKind)[1:]),
@@ -51,28 +71,23 @@ def _header() -> dict[str, Any]:
 
 
 def _example(scene: Scene, duration: float) -> dict[str, Any]:
-    numbers, load = pack(scene.axis), scene.normal_load
-    normal = None if load is None else load.plus(scene.axis.normal_force)
-    inputs = Inputs(scene.drive, scene.force) if load is None else LoadedInputs(scene.drive, scene.force, load)
-    flat = inputs.sinusoids()
-    rows = [flat[i:i + 5] for i in range(0, len(flat), 5)]
-    arrays, words = list[str](), dict[str, str]()
-    for name, profile in (('drive', scene.drive), ('force', scene.force), ('normal', normal)):
+    numbers, initial, profiles, sinusoids = numbers_of(scene)
+    rows = [sinusoids[i:i + 5] for i in range(0, len(sinusoids), 5)]
+    arrays, words, notes = list[str](), dict[str, str](), notes_of(Parameters)
+    for name, profile in profiles.items():
         words[name.upper()] = '{0}' if profile is None else _profile(name, profile, arrays)
     if rows:
         arrays.append(f'static const axis_sinusoid sinusoids[] = {{{", ".join(f"{{{c_row(row)}}}" for row in rows)}}};')
-    initial = scene.initial
     return {
         'NAME': scene.name, 'VERSION': __version__, 'DURATION': _number(duration),
         'PARAMETERS': '\n'.join([
-            *(f'    [AXIS_{name.upper()}] = {_number(number)},   /* {_notes(Parameters)[name]} */'
+            *(f'    [AXIS_{name.upper()}] = {_number(number)},   /* {notes[name]} */'
               for name, number in zip(PARAMETER_FIELDS, numbers, strict=False)),
             *(f'    {c_row(numbers[i:i + len(SEGMENT_FIELDS)])},'
               for i in range(len(PARAMETER_FIELDS), len(numbers), len(SEGMENT_FIELDS)))]),
         'ARRAYS': '\n'.join(['', *arrays, '']) if arrays else '',
-        'VARIES': 'true' if normal else 'false', 'COUNT': len(rows), 'SINUSOIDS': 'sinusoids' if rows else 'NULL',
-        'INITIAL': c_row([initial.position, initial.velocity, initial.rest_time, initial.stretch, initial.deflection]),
-        **words}
+        'VARIES': 'true' if profiles['normal'] else 'false', 'COUNT': len(rows),
+        'SINUSOIDS': 'sinusoids' if rows else 'NULL', 'INITIAL': c_row(initial), **words}
 
 
 def _profile(name: str, of: InputProfile, arrays: list[str]) -> str:
@@ -86,16 +101,12 @@ def _profile(name: str, of: InputProfile, arrays: list[str]) -> str:
 
 
 def _fields(record: type[Any]) -> str:
-    notes = _notes(record)
-    return '\n'.join(f'    double {"static_" if name == "static" else name};{_as_comment(notes.get(name, ""))}'
-                     for name in names_of(record))
+    notes = notes_of(record)
+    return '\n'.join(f'    double {"static_" if name == "static" else name};' + (f'   /* {note} */' if note else '')
+                     for name in names_of(record) for note in [notes.get(name, '')])
 
 
-def _as_comment(note: str) -> str:
-    return f'   /* {note} */' if note else ''
-
-
-def _notes(record: type[Any]) -> dict[str, str]:
+def notes_of(record: type[Any]) -> dict[str, str]:
     """Return what the source says of each field, in characters of C."""
     found = re.findall(r'^    (\w+): float\b[^#\n]*(?:# *(.*))?$', inspect.getsource(record), re.MULTILINE)
     return {name: note.rstrip(',').replace('`', '').replace('²', '^2') for name, note in found}

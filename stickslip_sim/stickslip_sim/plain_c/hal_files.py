@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The axis of a scene as a component for LinuxCNC: stickslip.comp, and the engine that it includes."""
 
-from ..axis import pack
 from ..core.errors import InputError
 from ..core.input_profile import constant
 from ..core.version import __version__
 from ..scene import Scene
 from ..simulation.drive import DriveLimits
 from ..simulation.encoder import EncoderSettings
-from .c_files import c_files, c_row, filled
+from .c_files import c_files, c_row, filled, numbers_of
 
 HAL_NAMES = 'stickslip.comp', 'stickslip_axis.c', 'stickslip_axis.h'
 _MM = 1000.0   # a metre
@@ -32,10 +31,8 @@ def hal_files(scene: Scene) -> dict[str, str]:
              'leave them out: MAX_VELOCITY and MAX_ACCELERATION in the INI limit the axis')):
         if is_there:
             raise InputError(name, f'that of {scene.name}', 'one that a component of LinuxCNC can do', fix)
-    initial = scene.initial
-    core = c_files(scene, 1.0)
+    core, numbers = c_files(scene, 1.0), numbers_of(scene)
     comp = filled('stickslip.comp', {
         'NAME': scene.name, 'VERSION': __version__, 'RESOLUTION': repr(_MM * resolution),
-        'PARAMETERS': c_row(pack(scene.axis)),
-        'INITIAL': c_row([initial.position, initial.velocity, initial.rest_time, initial.stretch, initial.deflection])})
+        'PARAMETERS': c_row(numbers.parameters), 'INITIAL': c_row(numbers.initial)})
     return {name: core.get(name, comp) for name in HAL_NAMES}

@@ -40,8 +40,7 @@ license "Apache-2.0";
 
 #define SECOND 1000000000   // ns
 static const double scene_parameters[] = {$PARAMETERS};
-enum { HEAD = AXIS_PARAMETERS, STEP = sizeof(Segment) / sizeof(double),
-       COUNT = sizeof scene_parameters / sizeof *scene_parameters };
+enum { COUNT = sizeof scene_parameters / sizeof *scene_parameters };
 static const axis_start_state scene_start = {$INITIAL};
 
 static int counted(struct __comp_state *one, int code)
@@ -52,20 +51,10 @@ static int counted(struct __comp_state *one, int code)
 
 static int scale_friction(struct __comp_state *one)
 {
-    const int factors[] = {AXIS_STATIC_INITIAL, AXIS_STATIC_LIMIT, AXIS_BACKWARD_INITIAL, AXIS_BACKWARD_LIMIT,
-                           AXIS_END_SLOPE};
-    double *numbers = one->scaled;   // a table may be longer than the stack of a thread
-    memcpy(numbers, scene_parameters, sizeof scene_parameters);
-    for (size_t i = 0; i < sizeof factors / sizeof *factors; i++) {
-        numbers[factors[i]] *= one->friction;
-    }
-    for (size_t i = HEAD; i < COUNT; i += STEP) {
-        Segment *segment = (Segment *)(numbers + i);
-        segment->friction *= one->friction;
-        segment->slope *= one->friction;
-    }
+    memcpy(one->scaled, scene_parameters, sizeof scene_parameters);   // it may be longer than the stack of a thread
+    axis_scale_friction(one->scaled, COUNT, one->friction);
     one->friction_in_force = one->friction;
-    return counted(one, axis_set_parameters(one->engine, numbers, COUNT));
+    return counted(one, axis_set_parameters(one->engine, one->scaled, COUNT));
 }
 
 static bool take(double *kept, double given, double least, double most)

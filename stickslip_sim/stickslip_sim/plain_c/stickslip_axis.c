@@ -14,15 +14,18 @@ enum {
 #define AXIS_AT_ONCE 0.01
 _Static_assert(offsetof(Parameters, segments) == AXIS_PARAMETERS * sizeof(double), "parameters");
 _Static_assert(sizeof(axis_event) == sizeof(EventRow) && sizeof(axis_sample_row) == sizeof(SampleRow)
-               && sizeof(axis_energy_row) == sizeof(EnergyRow), "rows");
+               && sizeof(axis_energy_row) == sizeof(EnergyRow) && sizeof(axis_sinusoid) == sizeof(GivenSinusoid), "rows");
+
+enum { AXIS_DRIVE, AXIS_FORCE, AXIS_NORMAL, AXIS_INPUTS };
 
 struct axis {
     Parameters parameters, next;
     State state;
     Events events;
     Sinusoids sinusoids;
-    Pieces drive, force, normal;
-    double one_piece[3][3];          /* start, value and rate of an input without arrays */
+    Pieces pieces[AXIS_INPUTS];
+    double one_piece[AXIS_INPUTS][3];     /* start, value and rate of an input without arrays */
+    Double3 now[AXIS_INPUTS];             /* value, rate and end of each where it was read last */
     SeriesScratch scratch[state_record_HIGHEST_ORDER + 1];
     axis_inputs inputs;
     double second, fraction, until, constant_normal_force;
@@ -69,6 +72,20 @@ static bool axis_has_parameters(const double *numbers, size_t count, size_t most
         && axis_is_size(numbers[AXIS_CONTACT_STIFFNESS]) && axis_is_size(numbers[AXIS_CONTACT_DAMPING])
         && (numbers[AXIS_COMPLIANT] == 0.0 || numbers[AXIS_CONTACT_STIFFNESS] > 0.0)
         && back >= 0.0 && back < (double)segments && back == floor(back);
+}
+
+void axis_scale_friction(double *parameters, size_t count, double factor)
+{
+    static const int scaled[] = {AXIS_STATIC_INITIAL, AXIS_STATIC_LIMIT, AXIS_BACKWARD_INITIAL, AXIS_BACKWARD_LIMIT,
+                                 AXIS_END_SLOPE};
+    for (size_t i = 0; i < sizeof scaled / sizeof *scaled; i++) {
+        parameters[scaled[i]] *= factor;
+    }
+    for (size_t i = AXIS_PARAMETERS; i + AXIS_SEGMENT <= count; i += AXIS_SEGMENT) {
+        Segment *segment = (Segment *)(parameters + i);
+        segment->friction *= factor;
+        segment->slope *= factor;
+    }
 }
 
 static void axis_take_parameters(Parameters *p, const double *numbers, size_t count)
@@ -129,68 +146,74 @@ static bool axis_is_profile(const axis_profile *of)
     return of->starts[0] == 0.0;
 }
 
+static const axis_profile *axis_profile_of(const axis_inputs *inputs, int i)
+{
+    return i == AXIS_DRIVE ? &inputs->drive : i == AXIS_FORCE ? &inputs->force : &inputs->normal;
+}
+
 static bool axis_are_inputs(const axis *a, const axis_inputs *inputs)
 {
-    if (inputs == NULL || inputs->sinusoid_count > a->most || !axis_is_profile(&inputs->drive)
-        || !axis_is_profile(&inputs->force) || (inputs->normal_varies && !axis_is_profile(&inputs->normal))) {
-        return false;
+    bool are = inputs != NULL && inputs->sinusoid_count <= a->most;
+    for (int i = 0; are && i < AXIS_INPUTS; i++) {
+        are = (i == AXIS_NORMAL && !inputs->normal_varies) || axis_is_profile(axis_profile_of(inputs, i));
     }
-    for (size_t i = 0; i < inputs->sinusoid_count; i++) {
+    for (size_t i = 0; are && i < inputs->sinusoid_count; i++) {
         const axis_sinusoid *one = &inputs->sinusoids[i];
-        if (!(isfinite(one->phase) && isfinite(one->v) && isfinite(one->f) && isfinite(one->n) && one->frequency >= 1e-9
-              && one->frequency <= 1e6 && (inputs->normal_varies || one->n == 0.0))) {
-            return false;
-        }
+        are = isfinite(one->phase) && isfinite(one->v) && isfinite(one->f) && isfinite(one->n) && one->frequency >= 1e-9
+            && one->frequency <= 1e6 && (inputs->normal_varies || one->n == 0.0);
     }
-    return true;
+    return are;
 }
 
-static void axis_take_profile(Pieces *pieces, double *one_piece, const axis_profile *of)
+/* Where the pieces at the present time end; what the inputs are there is `now`. */
+static double axis_read_inputs(axis *a)
 {
-    one_piece[0] = 0.0;
-    one_piece[1] = of->value + 0.0;
-    one_piece[2] = of->rate;
-    bool is_one = of->count == 0;
-    pieces->count = is_one ? 1 : (long)of->count;
-    pieces->latest = 0;
-    pieces->period = is_one ? INFINITY : of->period;
-    pieces->starts = is_one ? one_piece : (double *)of->starts;
-    pieces->values = is_one ? one_piece + 1 : (double *)of->values;
-    pieces->rates = is_one ? one_piece + 2 : (double *)of->rates;
+    double end = INFINITY;
+    for (int i = 0; i < AXIS_INPUTS; i++) {
+        a->now[i] = (Double3){a->constant_normal_force, 0.0, INFINITY};
+        if (a->pieces[i].count > 0) {
+            a->now[i] = pieces_piece_at(&a->pieces[i], a->second + a->fraction);
+        }
+        end = smaller(end, a->now[i].item2);
+    }
+    return end;
 }
 
+/* Let inputs be in force from the present time on. */
 static void axis_take_inputs(axis *a, const axis_inputs *inputs)
 {
     a->inputs = *inputs;
-    axis_take_profile(&a->drive, a->one_piece[0], &inputs->drive);
-    axis_take_profile(&a->force, a->one_piece[1], &inputs->force);
-    if (inputs->normal_varies) {
-        axis_take_profile(&a->normal, a->one_piece[2], &inputs->normal);
-    } else {
-        a->normal.count = 0;
+    for (int i = 0; i < AXIS_INPUTS; i++) {
+        double *one = a->one_piece[i];
+        axis_profile of = *axis_profile_of(inputs, i);
+        one[0] = 0.0;
+        one[1] = of.value + 0.0;
+        one[2] = of.rate;
+        if (of.count == 0) {
+            of = (axis_profile){i < AXIS_NORMAL || inputs->normal_varies, one, one + 1, one + 2, INFINITY, 0.0, 0.0};
+        }
+        a->pieces[i] = (Pieces){.count = (long)of.count, .period = of.period, .starts = (double *)of.starts,
+                                .values = (double *)of.values, .rates = (double *)of.rates};
     }
-    a->sinusoids.count = 0;
+    a->sinusoids.count = (long)inputs->sinusoid_count;
     for (size_t i = 0; i < inputs->sinusoid_count; i++) {
-        const axis_sinusoid *one = &inputs->sinusoids[i];
-        a->sinusoids.rows[a->sinusoids.count++] = (GivenSinusoid){one->frequency, one->phase, one->v, one->f, one->n};
+        memcpy(&a->sinusoids.rows[i], &inputs->sinusoids[i], sizeof(GivenSinusoid));
     }
+    a->until = axis_read_inputs(a);
 }
 
-/* Where the pieces at a time end, and what the inputs are there. */
-static double axis_read_inputs(axis *a, double time, Double3 *v, Double3 *f, Double3 *n)
+/* Enter the pieces of the inputs up to a time. */
+static long axis_enter(axis *a, double time)
 {
-    *v = pieces_piece_at(&a->drive, time);
-    *f = pieces_piece_at(&a->force, time);
-    *n = (Double3){a->constant_normal_force, 0.0, INFINITY};
-    if (a->normal.count > 0) {
-        *n = pieces_piece_at(&a->normal, time);
-    }
-    return smaller(smaller(v->item2, f->item2), n->item2);
+    DoubleLong2 entered = pieces_enter_pieces(&a->parameters, &a->state, &a->pieces[AXIS_DRIVE], &a->pieces[AXIS_FORCE],
+                                              &a->pieces[AXIS_NORMAL], a->until, time, &a->sinusoids, &a->events, 0);
+    a->until = entered.item0;
+    a->rows = entered.item1;
+    return entered.item2;
 }
 
 int axis_start(axis *a, const axis_start_state *initial, const axis_inputs *inputs)
 {
-    Double3 v, f, n;
     a->rows = 0;
     if (!axis_are_inputs(a, inputs) || initial == NULL) {
         return AXIS_BAD_INPUTS;
@@ -199,15 +222,15 @@ int axis_start(axis *a, const axis_start_state *initial, const axis_inputs *inpu
           && isfinite(initial->deflection) && initial->rest_time >= 0.0)) {
         return AXIS_BAD_STATE;
     }
-    axis_take_inputs(a, inputs);
     a->second = a->fraction = a->crowd_second = a->crowd_fraction = 0.0;
     a->crowd = 0;
     a->state.accounting = a->accounting ? 1.0 : 0.0;
-    a->until = axis_read_inputs(a, 0.0, &v, &f, &n);
-    a->parameters.normal_force = n.item0;
-    a->parameters.normal_rate = n.item1;
+    axis_take_inputs(a, inputs);
+    const Double3 *v = &a->now[AXIS_DRIVE], *f = &a->now[AXIS_FORCE], *n = &a->now[AXIS_NORMAL];
+    a->parameters.normal_force = n->item0;
+    a->parameters.normal_rate = n->item1;
     a->rows = engine_start(&a->parameters, &a->state, initial->position, initial->velocity, initial->rest_time,
-                           initial->stretch, initial->deflection, v.item0, v.item1, f.item0, f.item1, &a->sinusoids,
+                           initial->stretch, initial->deflection, v->item0, v->item1, f->item0, f->item1, &a->sinusoids,
                            &a->events, 0);
     return AXIS_OK;
 }
@@ -225,12 +248,9 @@ int axis_advance(axis *a, double second, double fraction)
         return AXIS_BAD_TIME;
     }
     if (a->until <= second + fraction) {
-        DoubleLong2 entered = pieces_enter_pieces(&a->parameters, &a->state, &a->drive, &a->force, &a->normal, a->until,
-                                                  second + fraction, &a->sinusoids, &a->events, 0);
-        a->until = entered.item0;
-        a->rows = entered.item1;
-        if (entered.item2 != AXIS_OK) {
-            return (int)entered.item2;
+        long code = axis_enter(a, second + fraction);
+        if (code != AXIS_OK) {
+            return (int)code;
         }
     }
     Long2 ended = engine_advance(&a->parameters, &a->state, second, fraction, &a->events, a->rows);
@@ -274,10 +294,7 @@ int axis_advance_to_event(axis *a, double second, double fraction)
             return AXIS_NO_PROGRESS;
         }
         if (a->rows == 0 && !is_there) {
-            DoubleLong2 entered = pieces_enter_pieces(&a->parameters, &a->state, &a->drive, &a->force, &a->normal, a->until,
-                                                      a->until, &a->sinusoids, &a->events, 0);
-            a->until = entered.item0;
-            a->rows = entered.item1;
+            axis_enter(a, a->until);
         }
     }
     return AXIS_OK;
@@ -285,7 +302,6 @@ int axis_advance_to_event(axis *a, double second, double fraction)
 
 int axis_set_inputs(axis *a, const axis_inputs *inputs)
 {
-    Double3 v, f, n;
     a->rows = 0;
     if (!axis_are_inputs(a, inputs)) {
         return AXIS_BAD_INPUTS;
@@ -293,13 +309,13 @@ int axis_set_inputs(axis *a, const axis_inputs *inputs)
     bool same_load = inputs->normal_varies == a->inputs.normal_varies
         && (!inputs->normal_varies || memcmp(&inputs->normal, &a->inputs.normal, sizeof inputs->normal) == 0);
     axis_take_inputs(a, inputs);
-    a->until = axis_read_inputs(a, a->second + a->fraction, &v, &f, &n);
+    const Double3 *v = &a->now[AXIS_DRIVE], *f = &a->now[AXIS_FORCE], *n = &a->now[AXIS_NORMAL];
     if (same_load) {
-        a->rows = engine_set_inputs(&a->parameters, &a->state, a->second, a->fraction, v.item0, v.item1, f.item0,
-                                    f.item1, &a->sinusoids, &a->events, 0);
+        a->rows = engine_set_inputs(&a->parameters, &a->state, a->second, a->fraction, v->item0, v->item1, f->item0,
+                                    f->item1, &a->sinusoids, &a->events, 0);
     } else {
-        a->rows = engine_set_load(&a->parameters, &a->state, a->second, a->fraction, n.item0, n.item1, v.item0, v.item1,
-                                  f.item0, f.item1, &a->sinusoids, &a->events, 0);
+        a->rows = engine_set_load(&a->parameters, &a->state, a->second, a->fraction, n->item0, n->item1, v->item0,
+                                  v->item1, f->item0, f->item1, &a->sinusoids, &a->events, 0);
     }
     return AXIS_OK;
 }
@@ -312,11 +328,9 @@ int axis_set_parameters(axis *a, const double *parameters, size_t count)
     }
     axis_take_parameters(&a->next, parameters, count);
     a->constant_normal_force = a->next.normal_force;
-    if (a->inputs.normal_varies) {
-        Double3 n = pieces_piece_at(&a->normal, a->second + a->fraction);
-        a->next.normal_force = n.item0;
-        a->next.normal_rate = n.item1;
-    }
+    axis_read_inputs(a);
+    a->next.normal_force = a->now[AXIS_NORMAL].item0;
+    a->next.normal_rate = a->now[AXIS_NORMAL].item1;
     a->rows = engine_set_parameters(&a->parameters, &a->next, &a->state, a->second, a->fraction, &a->events, 0);
     Parameters old = a->parameters;
     a->parameters = a->next;

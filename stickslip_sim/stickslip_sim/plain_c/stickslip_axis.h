@@ -91,6 +91,9 @@ $ENERGY
 
 typedef struct axis axis;
 
+/* Multiply all coefficients of friction in a row of parameters by a factor. */
+void axis_scale_friction(double *parameters, size_t count, double factor);
+
 /* Make an axis of `count` numbers as listed above, with room for so many sinusoids and for the events of one call, with
    an account of energy or without; NULL and a code where that is not possible. */
 axis *axis_new(const double *parameters, size_t count, size_t sinusoids, size_t events, bool accounting, int *code);
