@@ -3,15 +3,15 @@
 """A scene as an FMU: the description of its variables, its numbers, the compiled engine and the sources."""
 
 import io
-import platform
+import os
 import struct
 import sys
 import zipfile
 from collections.abc import Iterable, Iterator
+from html import escape
 from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
-from xml.sax.saxutils import quoteattr
 
 from ..axis.fields import names_of
 from ..axis.layout import PARAMETER_FIELDS
@@ -103,7 +103,7 @@ def _library() -> bytes:
 
 
 def _platform(version: int) -> str:
-    machine = platform.machine().lower()
+    machine = os.uname().machine.lower()
     return f'{sys.platform}64' if version == 2 and machine == 'x86_64' else f'{machine}-{sys.platform}'
 
 
@@ -165,7 +165,7 @@ def _profile(of: InputProfile | None) -> list[float]:
 # The description in both versions
 
 def _element(tag: str, /, *inside: str, **given: object) -> str:
-    head = f'<{tag}' + ''.join(f' {name}={quoteattr(str(value))}' for name, value in given.items()
+    head = f'<{tag}' + ''.join(f' {name}="{escape(str(value))}"' for name, value in given.items()
                                if value is not None and value != '')
     return f'{head}>\n' + '\n'.join(inside) + f'\n</{tag}>' if inside else f'{head}/>'
 

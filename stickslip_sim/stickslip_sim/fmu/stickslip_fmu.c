@@ -375,6 +375,12 @@ static size_t state_size(Instance *i)
     return sizeof(Saved) + axis_state_size(i->axis) * sizeof(double);
 }
 
+static int tell_size(Instance *i, size_t *size)
+{
+    *size = state_size(i);
+    return fmi3OK;
+}
+
 static uint64_t sum_of_state(Instance *i, const Saved *state)
 {
     return sum_of(&state->own, state_size(i) - offsetof(Saved, own));
@@ -518,7 +524,7 @@ BOTH(Reset, Reset, (void *c), reset(c))
 BOTH(GetFMUState, GetFMUstate, (void *c, void **state), get_state(c, (Saved **)state))
 BOTH(SetFMUState, SetFMUstate, (void *c, void *state), set_state(c, state))
 BOTH(FreeFMUState, FreeFMUstate, (void *c, void **state), free_state(state))
-BOTH(SerializedFMUStateSize, SerializedFMUstateSize, (void *c, void *state, size_t *size), (*size = state_size(c), fmi3OK))
+BOTH(SerializedFMUStateSize, SerializedFMUstateSize, (void *c, void *state, size_t *size), tell_size(c, size))
 EXPORT const char *fmi3GetVersion(void) { return "3.0"; }
 EXPORT const char *fmi2GetVersion(void) { return "2.0"; }
 EXPORT const char *fmi2GetTypesPlatform(void) { return "default"; }

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The engine as one file of plain C with its header, and an example of a scene: for any program that is not Python."""
 
-import inspect
 import re
+import sys
 import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -108,7 +108,9 @@ def _fields(record: type[Any]) -> str:
 
 def notes_of(record: type[Any]) -> dict[str, str]:
     """Return what the source says of each field, in characters of C."""
-    found = re.findall(r'^    (\w+): float\b[^#\n]*(?:# *(.*))?$', inspect.getsource(record), re.MULTILINE)
+    source = Path(sys.modules[record.__module__].__file__ or '').read_text(encoding='utf-8')
+    _, _, body = source.partition(f'\nclass {record.__name__}:\n')    # `inspect` takes 5 ms for each
+    found = re.findall(r'^    (\w+): float\b[^#\n]*(?:# *(.*))?$', re.split(r'\n(?=\S)', body)[0], re.MULTILINE)
     return {name: note.rstrip(',').replace('`', '').replace('²', '^2') for name, note in found}
 
 
