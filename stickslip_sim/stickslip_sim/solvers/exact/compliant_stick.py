@@ -33,6 +33,7 @@ from ...linear.oscillator import Oscillator, amplitude, bound
 from ...linear.roots import EPSILON, first_crossing, safe_step
 from .contact_force import (
     ContactForce,
+    ContactMotion,
     bracketed_root,
     contact_at,
     contact_motion,
@@ -64,19 +65,19 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
     motion = contact_motion(p, s, osc)
     limit = static_limit(p, s.rest, 1.0)
     back = limit_backwards(p, s.rest, limit)
-    rounding = 0.5 * force_rounding(p, s, limit)
-    rounding_back = 0.5 * force_rounding(p, s, back) if p.sided != 0.0 else rounding
     if motion.rate == 0.0 and motion.second == 0.0 and rings_within(
-            p, s, osc, motion, p.normal_force * limit + 2.0 * rounding, p.normal_force * back + 2.0 * rounding_back):
+            p, s, osc, motion, p.normal_force * limit + force_rounding(p, s, limit),
+            p.normal_force * back + force_rounding(p, s, back)):
         s.next.searched = math.inf
         return math.inf
-    if p.ends_by_drive == 0.0:
-        rounding = min(rounding, contact_rounding(p, s, motion, limit))
-        rounding_back = min(rounding_back, contact_rounding(p, s, motion, back)) if p.sided != 0.0 else rounding
+    rounding = _rounding(p, s, motion, limit)
+    rounding_back = _rounding(p, s, motion, back) if p.sided != 0.0 else rounding
     may_leap = leaps_far = motion.second == 0.0 and is_concave(p)
     pace = math.sqrt(osc.omega2)
     t = 0.0
     for i in range(STEPS):
+        if t > horizon:
+            return math.inf
         s.iterations += 1.0
         contact = contact_at(p, osc, motion, t)
         if may_leap and i == 1:
@@ -88,24 +89,27 @@ def compliant_stick(p: Parameters, s: State, horizon: float) -> float:
             leap = _leap(p, s, osc, contact, t, horizon - t)
             may_leap = leap == 0.0
             t += leap
-            if leap > 0.0 and t <= horizon:
+            if leap > 0.0:
                 continue
         if i > 0 and not leaps_far:
             leap = _frozen_leap(p, s, osc, motion.second, contact, t)
             if leap * pace > _WORTH:
                 t += leap
-                if t <= horizon:
-                    continue
-        if t <= horizon:
-            step, found, side = _step(p, s, osc, contact, motion.second, t, rounding, rounding_back)
-            if found == _IN_BRACKET:
-                return bracketed_root(p, s, osc, side, t, t + step)
-            t += step
-            if found == _IS_ROOT:
-                return t
-        if t > horizon:
-            return math.inf
+                continue
+        step, found, side = _step(p, s, osc, contact, motion.second, t, rounding, rounding_back)
+        if found == _IN_BRACKET:
+            return bracketed_root(p, s, osc, side, t, t + step)
+        t += step
+        if found == _IS_ROOT:
+            return t
     return GAVE_UP
+
+
+@inlined
+def _rounding(p: Parameters, s: State, motion: ContactMotion, limit: float) -> float:
+    """Return how near to N mu_s = N `limit` the force counts as on it."""
+    rounding = 0.5 * force_rounding(p, s, limit)
+    return rounding if p.ends_by_drive != 0.0 else min(rounding, contact_rounding(p, s, motion, limit))
 
 
 @inlined

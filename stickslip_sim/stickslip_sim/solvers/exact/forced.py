@@ -34,6 +34,7 @@ from ...axis.forces import (
     ROUNDING,
     band_of,
     breakpoint_speed,
+    force_rate,
     force_rounding,
     friction_line,
     lower_limit,
@@ -50,6 +51,7 @@ from ...core.hot_path import compiled, inlined
 from ...friction.static import CONSTANT
 from ...linear.oscillator import Oscillator
 from ...linear.roots import EPSILON, ITERATIONS, finite_horizon, first_crossing, safe_step
+from .contact_force import moves
 from .signals import GuardSignal, Reading, read_signal, signal_of
 from .static_guards import GAVE_UP, concave_root, grown, is_concave, law, steep_start
 
@@ -302,8 +304,12 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
             return
         limits = guard_limits(p, s, t)
         if _holds_nothing(s, limits):
-            _set_event(s, t, BREAKAWAY)
-            return
+            if _is_pushed(p, s):
+                _set_event(s, t, BREAKAWAY)
+                return
+            if signal.amplitude == 0.0:
+                s.next.searched = math.inf
+                return
         if not slips:
             leap = leap_of(p, s, signal, now, limits, t, max(now.noise, rounding), max(due, 2.0 * s.next.searched) - t)
             if leap == math.inf or _lands_beyond(s, t, leap, due):
@@ -334,6 +340,15 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
 def _holds_nothing(s: State, limits: GuardLimits) -> bool:
     """Whether stick has no friction at all."""
     return limits.top == limits.floor and limits.top_rate == 0.0 and limits.bow == 0.0 and s.mode == STICK
+
+
+@compiled
+def _is_pushed(p: Parameters, s: State) -> bool:
+    """Whether a slider that nothing holds begins to move: where the force, 0 within rounding now, has a rate at all."""
+    if p.compliant != 0.0 and moves(s):
+        return True
+    rate, second_rate = force_rate(p, s)
+    return rate != 0.0 or second_rate != 0.0
 
 
 @inlined
