@@ -5,6 +5,7 @@
 import json
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
@@ -14,14 +15,15 @@ import pytest
 
 from benchmarks.glitch_map import CircleAt, glitches
 from examples.circle import circle as circle_in_process
+from stickslip_sim.bags.schemas import MessageCodec
 from stickslip_sim.bags.topics import SLIDER_STATE, recorded_topics
 from stickslip_sim.check.circle import circle_outcomes, circular_test, paths_of
 from stickslip_sim.check.limits import NominalCircle, limits_of, outcomes_of, positions_of
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.figures.circular import CircularTest
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.recording import RunFacts, read_run, write_bag
-from stickslip_sim.recording.messages import Packer
+from stickslip_sim.recording import RecordedRun, RunFacts, read_run, write_bag
+from stickslip_sim.recording.messages import SETPOINT, Packer, header
 from stickslip_sim.recording.run import open_run, receipt_file
 from stickslip_sim.runs import SimulatedRun, simulate
 from stickslip_sim.scene import scene_from_values
@@ -54,6 +56,27 @@ def response(stiffness: float) -> complex:
 
 def circle(*, sense: int = 1, of_y: float = STIFFNESS) -> list[tuple[str, SimulatedRun]]:
     return [('x', linear_axis('x', math.pi)), ('y', linear_axis('y', sense * 0.5 * math.pi, of_y))]
+
+
+def bag_of_both(folder: Path, runs: list[tuple[str, SimulatedRun]], setpoints: Mapping[str, tuple[str, float]] = {}
+                ) -> RecordedRun:
+    """Return a bag of two axes; the setpoint of each, with its joint, is so many times the position of the drive."""
+    topics = [*(topic for axis in 'xy' for topic in recorded_topics(f'/{axis}')),
+              *(SETPOINT.resolved(f'/{axis}') for axis in setpoints)]
+    names = [topic.name for topic in topics]
+    writer = open_run(folder, RunFacts.of(runs[0][1].scene), topics)
+    pack, codec = Packer(SLIDER_STATE).pack, MessageCodec([SETPOINT.type])
+    for step, samples in enumerate(zip(*(run.sample_rows() for _, run in runs))):
+        time = step * 10**6
+        for axis, sample in zip('xy', samples):
+            writer.write(names.index(f'/{axis}/slider_state'), pack(time, step, sample), time, time, step)
+            if axis in setpoints:
+                joint, factor = setpoints[axis]
+                writer.write(names.index(f'/{axis}/setpoint'), codec.encode(SETPOINT.type, {
+                    'header': header(time), 'name': [joint], 'position': np.array([factor * sample.drive_position]),
+                    'velocity': np.zeros(1), 'effort': np.zeros(0)}), time, time, step)
+    writer.close(receipt_file({}))
+    return read_run(folder)
 
 
 class TestRuns:
@@ -100,19 +123,20 @@ class TestRuns:
 
     def test_a_bag_of_two_axes_is_both(self, tmp_path: Path) -> None:
         runs = circle()
-        topics = [*recorded_topics('/x'), *recorded_topics('/y')]
-        names = [topic.name for topic in topics]
-        writer = open_run(tmp_path / 'both', RunFacts.of(runs[0][1].scene), topics)
-        pack = Packer(SLIDER_STATE).pack
-        for step, samples in enumerate(zip(*(run.sample_rows() for _, run in runs))):
-            for axis, sample in zip('xy', samples):
-                data, place = pack(step * 10**6, step, sample), names.index(f'/{axis}/slider_state')
-                writer.write(place, data, step * 10**6, step * 10**6, step)
-        writer.close(receipt_file({}))
-        (path,), (expected,) = paths_of([('both', read_run(tmp_path / 'both'))]), paths_of(runs)
+        (path,), (expected,) = paths_of([('both', bag_of_both(tmp_path / 'both', runs))]), paths_of(runs)
         assert path.name == 'both:/x/slider_state, both:/y/slider_state'
         assert (path.actual == expected.actual).all()
         assert (path.commanded == expected.commanded).all()
+
+    def test_the_setpoint_of_each_axis_in_a_bag_of_both(self, tmp_path: Path) -> None:
+        """That of y, in another joint, is half as large, and of x there is none from a third node."""
+        runs = circle()
+        run = bag_of_both(tmp_path / 'both', runs, {'x': ('axis_slider', 2.0), 'y': ('left/axis_slider', 0.5)})
+        (path,), (expected,) = paths_of([('both', run)]), paths_of(runs)
+        assert path.commanded == pytest.approx(expected.commanded * [2.0, 0.5], abs=1e-15)
+        run = bag_of_both(tmp_path / 'one', runs, {'y': ('axis_slider', 0.5)})
+        (path,) = paths_of([('one', run)])
+        assert path.commanded == pytest.approx(expected.commanded * [1.0, 0.5], abs=1e-15)
 
     def test_recorded_runs_are_as_simulated_ones(self, tmp_path: Path) -> None:
         runs = circle()

@@ -9,13 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bags.topics import SLIDER_STATE
-from ..core.arrays import Numbers
+from ..core.arrays import Columns, Numbers
 from ..core.errors import InputError, RecordingError
 from ..figures.circular import Circle, CircularTest, least_squares_circle, turns_of
-from ..recording import RecordedRun
+from ..recording import Bag, RecordedRun
+from ..recording.messages import SETPOINT
 from ..runs import Run
 from .limits import CheckedSpan, LimitOutcome, Limits, NominalCircle, check_fit
-from .observed_run import setpoint_of
+from .observed_run import Reference, setpoint_of
 from .report import Checked
 
 _FIELDS = ('time', 'position', 'drive_position')
@@ -61,15 +62,24 @@ def _axes_of(name: str, run: Run) -> list[_Axis]:
     if isinstance(run, RecordedRun):
         topics = sorted(topic for topic, kind in run.bag.topics.items() if kind == SLIDER_STATE.type)
         if len(topics) > 1:
-            held = [run.bag.columns(topic) for topic in topics]
-            return [_Axis(f'{name}:{topic}', [columns[field] for field in _FIELDS])
-                    for topic, columns in zip(topics, held)]
-        columns = run.state_columns(_FIELDS)
-    else:
-        columns = run.states
-    wanted = setpoint_of(run)
-    return [_Axis(name, [columns['time'], columns['position'],
-                         wanted.at(columns['time']) if wanted else columns['drive_position']])]
+            return [_axis(f'{name}:{topic}', run.bag.columns(topic), _setpoint_beside(run.bag, topic))
+                    for topic in topics]
+        return [_axis(name, run.state_columns(_FIELDS), setpoint_of(run))]
+    return [_axis(name, run.states, setpoint_of(run))]
+
+
+def _axis(name: str, columns: Columns, wanted: Reference | None) -> _Axis:
+    return _Axis(name, [columns['time'], columns['position'],
+                        wanted.at(columns['time']) if wanted else columns['drive_position']])
+
+
+def _setpoint_beside(bag: Bag, states: str) -> Reference | None:
+    """Return the setpoint in the namespace of a topic of states; None without one."""
+    topic = f'{states.rpartition("/")[0]}/{SETPOINT.name}'
+    found = [(message.log_time / 1e9, *bag.decode(message).position) for message in bag.messages([topic])
+             ] if bag.topics.get(topic) == SETPOINT.type else []
+    rows = [row for row in found if len(row) == 2]    # others have no joint, or several
+    return Reference(*np.array(rows).T) if rows else None
 
 
 def _path(x: _Axis, y: _Axis) -> Path:
