@@ -132,6 +132,16 @@ SIDE_LIMITS = """limits:
   at rest: {check: following_error, max: 1.0e-3, window: {begin: 0.9}}
   peak_speed: {max: 9.0}
 """
+OWN = """
+class Soft:
+    def __init__(self, gain=2.0):
+        self.gain = gain
+
+    def __call__(self, t, measured):
+        return self.gain * (measured.setpoint.position - measured.slider_position)
+
+stiff = Soft(8.0)
+"""
 
 
 def proportional(gain: float, _: float, measured: Measurement) -> float:
@@ -208,8 +218,35 @@ def test_controllers_in_columns_with_their_figures(sides: Sides, tmp_path: Path,
     assert 'data:image/svg+xml' in (out / 'report.html').read_text()
 
 
+def test_controllers_of_a_file_beside_a_recorded_run(sides: Sides, tmp_path: Path, capsys: Capture) -> None:
+    """Each drives the axis of the scene as close-loop has it, and is compared as its recorded run would be."""
+    (tmp_path / 'own.py').write_text(OWN)
+    (tmp_path / 'move.csv').write_text('time,position\n0,0\n1,0.002\n')
+    own, out = [f'{tmp_path}/own.py:{name}' for name in ('Soft', 'stiff')], tmp_path / 'out'
+    loop = ['--scene', 'positioning', '--duration', '1', '--rate', '500', '--setpoint', f'{tmp_path}/move.csv']
+    changes = ['--set', 'encoder.resolution=1e-6']
+    code, said, err = answered(capsys, 'compare', '--controllers', *own, NAMES[0], *loop, *changes, '--window', '0:1',
+                               '--out', out)
+    assert (code, err) == (0, '')
+    figures = json.loads((out / 'report.json').read_text())['figures']
+    assert [*figures] == [*own, NAMES[0]]
+    assert all(name in said for name in figures)
+    for place in own:
+        folder = tmp_path / place.rpartition(':')[2]
+        assert answered(capsys, 'close-loop', place, *loop, *changes, '--out', folder)[0] == 0
+        run = read_run(folder)
+        error = np.abs(run.setpoint['position'] - run.samples['position'])
+        assert figures[place]['following_error'] == error.max()
+    assert figures[own[0]]['following_error'] > 1.1 * figures[own[1]]['following_error']
+
+
 @pytest.mark.usefixtures('sides')
 @pytest.mark.parametrize(('arguments', 'said'), [
+    (['compare', '--controllers', 'own.py:Soft', '--out', 'o'], 'A controller needs --scene SCENE and --duration'),
+    (['compare', '--controllers', *NAMES, '--rate', '500', '--out', 'o'], '--rate needs --controllers FILE.py:NAME'),
+    (['compare', 'own.py:Soft', '--out', 'o'], "RUN_OR_SCENE = 'own.py:Soft' is refused"),
+    (['compare', '--controllers', 'own.py:Soft', '--scene', 'positioning', '--duration', '1', '--out', 'o'],
+     'must be FILE.py:NAME, an existing file'),
     (['plot', *NAMES, NAMES[0]], 'Give each RUN_OR_SCENE only once'),
     (['plot', *NAMES, '--window', '0:3'], 'must be A:B with 0 <= A < B <= 1 s'),
     (['plot', *NAMES, '--limits', 'none.yaml'], "limits file = 'none.yaml' is refused"),

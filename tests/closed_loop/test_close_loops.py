@@ -316,6 +316,7 @@ def test_the_verb_writes_a_folder_and_judges(source: Path, limits: str, tmp_path
     assert (code, err.count('\n')) == (3, 1)
     assert 'do not pass' in err
     assert 'with 95 % confidence' in out
+    assert 'the same noise' not in out
     found = json.loads((tmp_path / 'out' / 'result.json').read_text())
     assert found['points'] == 6
     assert set(found['limits']) == {'following_error', 'sticks'}
@@ -325,3 +326,17 @@ def test_the_verb_writes_a_folder_and_judges(source: Path, limits: str, tmp_path
     assert '0 run now' in again
     assert 'a folder that does not exist' in refused(capsys, *given, '--out', tmp_path / 'out')
     assert 'needs --over' in refused(capsys, *given[:8], '--samples', '4')
+
+
+def test_all_points_have_the_noise_of_the_scene(source: Path, tmp_path: Path, capsys: Capture) -> None:
+    """Axes that are the same, to the last bit, under a controller that hands on what it measures."""
+    (tmp_path / 'own.py').write_text('def echo(t, measured):\n    return 1e3 * measured.slider_position\n')
+    code, out, _ = answered(
+        capsys, 'close-loop', f'{tmp_path}/own.py:echo', '--scene', 'positioning', '--duration', '0.1', '--over',
+        'command.max_force=1e3:1e4:2', '--set', 'encoder.noise=1e-6', '--set', 'seed=7', '--out', tmp_path / 'out')
+    assert code == 0
+    assert 'note: all points have the seed of the scene, 7: the same noise, losses and scatter' in out
+    one, other = (loops(f'{tmp_path}/own.py:echo', over={'command.max_force': (1e3, 1e4, 2)}, samples=None, gains={},
+                        changes={'encoder.noise': 1e-6}).run(i) for i in (0, 1))
+    assert one.measured['slider_position'].any()
+    assert np.array_equal(one.measured['slider_position'], other.measured['slider_position'])

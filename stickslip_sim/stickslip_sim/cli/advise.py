@@ -40,6 +40,5 @@ def advise(scene: str, tolerance: float, duration: float | None, changes: SceneC
     overrides = overridden(changes.given(), changes_between(loaded, found.least.trial.scene or loaded))
     show([*advice_report(found), *verdict_report(found, overrides)])
     write_json(out, advice_as_values(found, overrides), 1)
-    if scene_out is not None:
-        write_text(scene_out, least_scene_lines(found))
+    write_text(scene_out, least_scene_lines(found))
     say_written(out, scene_out)

@@ -3,13 +3,10 @@
 """What verbs have in common: the arguments RUN and RUN_OR_SCENE, the options --set and --allow-implausible."""
 
 import functools
-import os
 import shlex
 import sys
-import warnings
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
@@ -29,24 +26,13 @@ if TYPE_CHECKING:
 
 
 verb = functools.partial(click.command, cls=Verb)
-_OF_RUNS, _OF_SCENES = ('.mcap',), ('.yaml', '.yml')
-_OF_A_GLOB = '*?['
-_A_RUN = 'a recorded run, a folder or an .mcap file'
 
 
-def is_recorded(source: str) -> bool:
-    """Return whether this is a recorded run, a folder or an .mcap file; the name of a shipped scene is the scene.
-
-    Raises InputError when it is neither, nor the file of a scene.
-    """
-    from ..scene import scene_names
-
-    path = Path(source)
-    if source in scene_names():
-        return False
-    if not os.path.lexists(path):
-        raise _is_not_there('RUN_OR_SCENE', source, 'a recorded run or a scene', scene_names(), _OF_RUNS + _OF_SCENES)
-    return path.is_dir() or path.suffix in _OF_RUNS
+def check_usage(*cases: tuple[object, str]) -> None:
+    """Raise UsageError with what is said of the first of cases that is so."""
+    for is_so, said in cases:
+        if is_so:
+            raise click.UsageError(said)
 
 
 def recorded_run(path: str) -> 'RecordedRun':
@@ -54,71 +40,45 @@ def recorded_run(path: str) -> 'RecordedRun':
 
     Raises RecordingError, and InputError where nothing is.
     """
-    from ..core.errors import RecordingWarning
-    from ..recording import read_run
+    from ..inputs.sources import recorded_run as read
 
-    check_run(path)
-    with warnings.catch_warnings(), progress_bar('reading'):
-        warnings.simplefilter('ignore', RecordingWarning)
-        return read_run(path)
+    with progress_bar('reading'):
+        return read(path)
 
 
 def check_sources(sources: Sequence[str], duration: float | None, changes: 'SceneChanges', once: bool = True) -> None:
     """Raise UsageError where one is given again, --duration and --set have no scene, or a scene has no duration."""
+    from ..inputs.sources import is_recorded
+
     if once:
         check_each_once(sources)
     recorded = [is_recorded(source) for source in sources]
-    if all(recorded) and (duration is not None or changes.overrides):
-        raise click.UsageError('--duration and --set apply to scenes, not to recorded runs.')
-    if not all(recorded) and duration is None:
-        raise click.UsageError('A scene needs --duration SECONDS.')
+    check_usage((all(recorded) and (duration is not None or changes.overrides),
+                 '--duration and --set apply to scenes, not to recorded runs.'),
+                (not all(recorded) and duration is None, 'A scene needs --duration SECONDS.'))
 
 
-def run_of(source: str, duration: float | None, changes: 'SceneChanges', limits: 'Limits | None' = None) -> 'Run':
+def run_of_source(source: str, duration: float | None, changes: 'SceneChanges', limits: 'Limits | None' = None
+                  ) -> 'Run':
     """Return a recorded run, or that of a scene: for `limits`, which have to fit it, sampled as its node records it.
 
     Raises InputError and RecordingError.
     """
-    if is_recorded(source) or duration is None:    # a scene has one
-        return recorded_run(source)
-    from ..check.limits import check_fit
+    from ..inputs.sources import is_recorded
     from ..runs import simulate, simulate_events
     from ..runs.simulated import check_run_times
 
+    if is_recorded(source) or duration is None:    # a scene has one
+        return recorded_run(source)
     if limits is not None:
+        from ..check.limits import check_fit
+
         check_fit(limits, 0.0, duration, has_timing=False, commands=None)
     check_run_times(duration, None)
     scene = changes.load(source)
     with progress_bar('simulating') as progress:
         return simulate_events(scene, duration, progress) if limits is None else simulate(scene, duration,
                                                                                           progress=progress)
-
-
-def check_run(path: str) -> None:
-    """Raise InputError unless something is where a recorded run should be."""
-    from ..core.errors import InputError
-    from ..scene import scene_names
-
-    if os.path.lexists(path):
-        return
-    if path in scene_names():
-        raise InputError('RUN', path, _A_RUN, f'this is a scene: record it with stickslip simulate {path} --duration 10'
-                         ' --bag FOLDER')
-    raise _is_not_there('RUN', path, _A_RUN, [], _OF_RUNS)
-
-
-def _is_not_there(name: str, source: str, allowed: str, known: list[str], endings: tuple[str, ...]) -> Exception:
-    """Return what is wrong with a path or name that nothing has, with the nearest one."""
-    from ..core.errors import InputError, paths_beside, suggestion
-
-    if any(letter in source for letter in _OF_A_GLOB):
-        return InputError(name, source, allowed, 'no such run: nothing matches it')
-    words = [] if os.sep in source else known
-    beside = paths_beside(Path(source), endings, folders=True)
-    written = [f'.{os.sep}{word}' if source.startswith(f'.{os.sep}') else word for word in beside]
-    what = 'no such file' if source.endswith(_OF_SCENES) else 'no such run' if not words else 'no such run or scene'
-    meant = suggestion(source, [*words, *written], '')
-    return InputError(name, source, allowed, f'{what}; {meant}' if meant else f'{what}: check the name')
 
 
 # The options --set and --allow-implausible of every verb that loads a scene, and the scene with them.
@@ -207,8 +167,7 @@ scene_duration = click.option('--duration', type=float, metavar='SECONDS', help=
 
 def check_each_once(sources: Sequence[str]) -> None:
     """Raise UsageError where one is given again."""
-    if len(set(sources)) < len(sources):
-        raise click.UsageError('Give each RUN_OR_SCENE only once.')
+    check_usage((len(set(sources)) < len(sources), 'Give each RUN_OR_SCENE only once.'))
 
 
 def command_line(*words: str, **options: Iterable[object]) -> str:
@@ -275,9 +234,8 @@ def _members(workers: str | None, scheduler: str | None) -> Members:
     from ..study.folder import process_count
     from ..study.sweep import cluster, processes
 
+    check_usage((scheduler is not None and workers is not None, '--workers and --scheduler exclude each other.'))
     if scheduler is not None:
-        if workers is not None:
-            raise click.UsageError('--workers and --scheduler exclude each other.')
         return cluster(scheduler)
     count = process_count(str(workers))
     return processes(count) if count > 1 else nullcontext()

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from .arguments import check_usage
 from .files import progress_bar, say_written, whole, write_text
 
 _ROUNDS, _QUICK_ROUNDS = 7, 1
@@ -22,8 +23,7 @@ _QUICK_CASES, _QUICK_DURATION = ('A', 'paper_fig8'), 2.0   # s
 @click.option('--quick', is_flag=True, help='Run two scenes for 2 s with one sample, as a smoke test.')
 def bench(chosen: tuple[str, ...], more: tuple[str, ...], out: str | None, rounds: int | None, quick: bool) -> None:
     """Measure error and cost of every solver and setting, and of other simulators that are installed."""
-    if more and not chosen:
-        raise click.UsageError('Give the scenes after --scenes.')
+    check_usage((more and not chosen, 'Give the scenes after --scenes.'))
     folder = _made(out) if out is not None else None
     from ..bench.contestants import contestants
     from ..bench.outside import batch_ratios, outside_ratios, ratios

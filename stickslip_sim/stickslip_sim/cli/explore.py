@@ -6,13 +6,12 @@ from pathlib import Path
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, check_run, recorded_run, scene_changes, verb
+from .arguments import SceneChanges, recorded_run, scene_argument, scene_changes, verb
 from .files import FILE, say_written, write_text
 
 
 @verb(short_help='Write a scene as an interactive web page.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--out', type=FILE, default='explore.html', metavar='FILE.html', help='Page to write [default: '
                                                                                    'explore.html].')
 @click.option('--beside', metavar='RUN', help='Draw a measured run behind it: a run folder, a bag, or a CSV file '
@@ -31,6 +30,7 @@ def explore(scene: str, out: str, beside: str | None, changes: SceneChanges) -> 
     if beside is not None and Path(beside).suffix == '.csv':
         from ..inputs.csv_table import heading_of
         from ..inputs.measurement import Measurement
+        from ..inputs.sources import check_run
 
         check_run(beside)
         names = heading_of(Path(beside))

@@ -7,7 +7,7 @@ import warnings
 
 import click
 
-from .arguments import check_run, run_argument, verb
+from .arguments import check_usage, run_argument, verb
 from .files import FILE, TEXT, say_written, whole, write_text
 
 
@@ -23,10 +23,10 @@ def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> N
     log_time is simulation time and publish_time the message stamp, both in ns; sequence is the step.  A varying normal
     force adds a column to friction_force.
     """
-    if csv_file is None and parquet is None:
-        raise click.UsageError('Give --csv FILE.csv or --parquet FILE.parquet.')
+    check_usage((csv_file is None and parquet is None, 'Give --csv FILE.csv or --parquet FILE.parquet.'))
     from ..core.arrays import has_parquet
     from ..core.errors import InputError
+    from ..inputs.sources import check_run
 
     if parquet is not None and not has_parquet():
         raise InputError('--parquet', parquet, 'written by pandas with fastparquet or pyarrow, which are not installed',
@@ -47,7 +47,5 @@ def export(run: str, csv_file: str | None, parquet: str | None, topic: str) -> N
         frame = bag.frame(topic)
         with whole(parquet) as temporary:
             frame.assign(**normal_force(frame)).to_parquet(temporary, index=False)
-    if csv_file is not None:
-        blocks = bag.column_blocks(topic)
-        write_text(csv_file, csv_lines({**block, **normal_force(block)} for block in blocks))
+    write_text(csv_file, csv_lines({**block, **normal_force(block)} for block in bag.column_blocks(topic)))
     say_written(csv_file, parquet)

@@ -4,13 +4,12 @@
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, scene_changes, verb
+from .arguments import SceneChanges, scene_argument, scene_changes, verb
 from .files import FILE, say_written, whole
 
 
 @verb(short_help='Export a scene as an FMU for co-simulation.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--out', type=FILE, required=True, metavar='FILE.fmu', help='FMU to write.')
 @click.option('--fmi', 'version', type=click.Choice(['3', '2']), default='3', help='FMI version [default: 3].')
 @scene_changes('Change a parameter of the scene.')

@@ -4,13 +4,12 @@
 
 import click
 
-from . import completion
-from .arguments import SceneChanges, scene_changes, verb
+from .arguments import SceneChanges, scene_argument, scene_changes, verb
 from .files import FOLDER, new_folder, say_written
 
 
 @verb(short_help='Export the axis as a LinuxCNC component.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.option('--out', type=FOLDER, required=True, metavar='DIR', help='New folder for the component.')
 @scene_changes('Change a parameter of the scene.')
 def export_hal(scene: str, out: str, changes: SceneChanges) -> None:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..core.errors import InputError
+from ..core.errors import InputError, VerdictError
 from ..core.paths import check_picture_name, made_folder, nearest_existing
 from ..core.types import Progress
 
@@ -139,8 +139,13 @@ def whole(path: str) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
-def write_text(path: str, lines: Iterable[str]) -> None:
-    """Write lines to a file, or to standard output for '-', whose errors are left to the end of the tool (`main`)."""
+def write_text(path: str | None, lines: Iterable[str]) -> None:
+    """Write lines where they are asked for: to a file, or for '-' to standard output.
+
+    Errors of that are left to the end of the tool (`main`).
+    """
+    if path is None:
+        return
     if path == STDOUT:
         if sys.stdout is None:
             raise InputError('output', 'standard output', 'open', 'the parent process closed it')
@@ -155,8 +160,7 @@ def write_json(path: str | None, values: Any, indent: int = 2) -> None:
     """Write values, of any kind that `plain` takes, where they are asked for."""
     from ..report.values import json_text
 
-    if path is not None:
-        write_text(path, [json_text(values, indent)])
+    write_text(path, [] if path is None else [json_text(values, indent)])
 
 
 def draw(path: str | None, drawing: Callable[[Path], object]) -> None:
@@ -166,11 +170,18 @@ def draw(path: str | None, drawing: Callable[[Path], object]) -> None:
             drawing(temporary)
 
 
-def show(parts: 'Iterable[Part]', flush: bool = False) -> None:
-    """Print a report; at once where the verb goes on with work."""
+def show(parts: 'Iterable[Part]', *others: str | None, flush: bool = False) -> None:
+    """Print a report, unless one of `others` is written there instead; at once where the verb goes on with work."""
     from ..report.text import text_lines
 
-    print(*(f'{line}\n' for line in text_lines(parts)), sep='', end='', flush=flush)
+    if STDOUT not in others:
+        print(*(f'{line}\n' for line in text_lines(parts)), sep='', end='', flush=flush)
+
+
+def end_with(complaint: str) -> None:
+    """Raise VerdictError where there is something to complain of."""
+    if complaint:
+        raise VerdictError(complaint)
 
 
 def say_written(*paths: str | None) -> None:

@@ -2,24 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """`stickslip friction`: the friction curve of a run or a file, the laws that fit it, and the scene with the best."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..core.errors import ALLOW
 from . import completion
-from .arguments import allow_implausible, recorded_run, verb
-from .files import FILE, PICTURE, SCENE_FILE, draw, say_written, write_text
+from .arguments import SceneChanges, allow_implausible, check_usage, recorded_run, verb
+from .files import FILE, PICTURE, SCENE_FILE, draw, say_written, show, write_text
 
 if TYPE_CHECKING:
     from ..identification.curve.measured_curve import FrictionCurve, Units
     from ..scene import Scene
 
 _LAWS = ('best', 'table', 'gaussian', 'stribeck', 'exponential', 'hyperbolic', 'points')
-_OF_A_FILE = {'speed_unit': '--speed-unit', 'force_unit': '--force-unit', 'lead': '--lead', 'rated': '--rated',
-              'meant': ALLOW}
-_OF_A_RUN = {'mass': '--mass', 'slowest': '--slowest', 'csv': '--csv'}
+_OF_A_FILE, _OF_A_RUN = ('speed_unit', 'force_unit', 'lead', 'rated', 'meant'), ('mass', 'slowest', 'csv')
 
 
 @verb(short_help='Fit friction laws to a measured run or curve.')
@@ -54,38 +51,37 @@ def friction(source: str, normal_force: float | None, direction: str, backward: 
     For a run, friction is the drive force minus inertia, binned by velocity.  The best law has the lowest AICc.  See
     docs/friction_curve.md.
     """
-    is_run = Path(source).is_dir() or Path(source).suffix == '.mcap'
-    others = {option for name, option in (_OF_A_FILE if is_run else _OF_A_RUN).items() if given[name]}
-    if others:
-        raise click.UsageError(f'{", ".join(sorted(others))}: not for a {"run" if is_run else "file"}.')
-    if out is None and (changes or scene is not None) and not is_run and not given['force_unit']:
-        raise click.UsageError('--scene and --set need --out SCENE.yaml.')
-    if backward and (scene is None or direction not in ('both', 'backward')):
-        raise click.UsageError('--backward needs --scene and does not take --direction.')
-    if plot is not None and direction == 'each':
-        raise click.UsageError('--plot draws one curve: choose --direction both, forward or backward.')
+    from ..inputs.sources import names_recording
+
+    is_run = names_recording(source)
+    others = sorted({'meant': ALLOW}.get(name, '--' + name.replace('_', '-'))
+                    for name in (_OF_A_FILE if is_run else _OF_A_RUN) if given[name])
+    check_usage(
+        (others, f'{", ".join(others)}: not for a {"run" if is_run else "file"}.'),
+        (out is None and (changes or scene is not None) and not is_run and not given['force_unit'],
+         '--scene and --set need --out SCENE.yaml.'),
+        (backward and (scene is None or direction not in ('both', 'backward')),
+         '--backward needs --scene and does not take --direction.'),
+        (plot and direction == 'each', '--plot draws one curve: choose --direction both, forward or backward.'),
+        (not is_run and given['speed_unit'] is None,
+         'A file needs --speed-unit UNIT, the unit of its first column, such as mm/s.'))
     from ..identification.curve.report import fitted_curves, scene_of_curves, scene_text_of
     from ..inputs import load_scene
-    from ..scene import parse_override
 
-    of_run = {'axis.mass': given['mass']} if given['mass'] is not None else {}
-    overrides = {**(of_run if scene is None else {}), **dict(map(parse_override, changes))}
-    base = None if scene is None else load_scene(scene)
-    changed = None if scene is None else load_scene(scene, overrides)
+    overrides = {**({'axis.mass': given['mass']} if scene is None and given['mass'] is not None else {}),
+                 **SceneChanges(changes, ()).given()}
+    base, changed = (None, None) if scene is None else (load_scene(scene), load_scene(scene, overrides))
     if normal_force is None and changed is not None and (is_run or given['force_unit']):
         normal_force = changed.axis.normal_force
-    curve, units, notes = (_of_run(source, normal_force, changed, **given) if is_run else
-                           _of_file(source, normal_force, **given))
+    curve, units, notes = (_of_run if is_run else _of_file)(source, normal_force, changed, **given)
     found = fitted_curves(source, curve, units, 'backward' if backward else direction, law, notes,
                           base if backward else None)
     made = None if out is None else scene_of_curves(found, base, overrides, backward)
     print('\n\n'.join('\n'.join(one.lines()) for one in found))
     draw(plot, found[0].draw)
-    if out is not None and made is not None:
-        write_text(out, [scene_text_of(found, made, scene)])
+    write_text(out, [] if made is None else [scene_text_of(found, made, scene)])
     say_written(given['csv'], out, plot)
-    if out is not None and made is not None:
-        print('\n'.join(found[0].next_lines(out, made, scene, changes)))
+    show([] if made is None else found[0].next_lines(str(out), made, scene, changes))
 
 
 def _of_run(source: str, normal_force: float | None, scene: 'Scene | None', mass: float | None, slowest: float | None,
@@ -94,18 +90,13 @@ def _of_run(source: str, normal_force: float | None, scene: 'Scene | None', mass
     from .csv_tables import csv_lines
 
     found = friction_curve(recorded_run(source), mass, scene, slowest)
-    if csv is not None:
-        write_text(csv, csv_lines([found.columns]))
+    write_text(csv, csv_lines([found.columns]))
     return found.curve(normal_force), found.units(normal_force), found.notes
 
 
-def _of_file(source: str, normal_force: float | None, speed_unit: str | None, force_unit: str | None,
-             lead: str | None, rated: str | None, meant: tuple[str, ...], **_: object
-             ) -> 'tuple[FrictionCurve, Units, tuple[str, ...]]':
+def _of_file(path: str, load: float | None, _: object, **given: Any) -> 'tuple[FrictionCurve, Units, tuple[str, ...]]':
     from ..identification.curve.measured_curve import load_curve, units_of
     from ..inputs.units import drive_units
 
-    if speed_unit is None:
-        raise click.UsageError('A file needs --speed-unit UNIT, the unit of its first column, such as mm/s.')
-    units = units_of(speed_unit, force_unit, normal_force, drive_units(lead, rated))
-    return load_curve(source, units, meant), units, ()
+    units = units_of(given['speed_unit'], given['force_unit'], load, drive_units(given['lead'], given['rated']))
+    return load_curve(path, units, given['meant']), units, ()

@@ -11,7 +11,7 @@ import click
 
 from . import completion
 from .arguments import SceneChanges, recorded_run, scene_changes
-from .files import check_new_folder, milestones, new_folder, progress_bar
+from .files import check_new_folder, end_with, milestones, new_folder, progress_bar
 
 if TYPE_CHECKING:
     from ..identification.many_fits import WorkFolder
@@ -42,7 +42,6 @@ def identify(runs: tuple[str, ...], scene: str, free: str, out: str, laws: bool,
     if not resume:
         check_new_folder('--out', out)
     count = process_count('1' if workers is None else workers)
-    from ..core.errors import VerdictError
     from ..identification.identify import identify as find
     from ..identification.many_fits import WorkFolder, facts_of
     from ..identification.report import IDENTIFIED_PAGE, result_lines, write_results
@@ -61,9 +60,8 @@ def identify(runs: tuple[str, ...], scene: str, free: str, out: str, laws: bool,
     work.finish()
     print('\n'.join(result_lines(found, names)))
     print(f'written: {Path(out) / IDENTIFIED_PAGE}')
-    if not found.fits:
-        raise VerdictError(f'the model does not fit {names}: {found.misfits[0].statement}; '
-                           f'{Path(out) / IDENTIFIED_PAGE} shows where')
+    end_with('' if found.fits else f'the model does not fit {names}: {found.misfits[0].statement}; '
+                                   f'{Path(out) / IDENTIFIED_PAGE} shows where')
 
 
 @contextmanager

@@ -7,7 +7,7 @@ from contextlib import ExitStack
 import click
 
 from . import completion
-from .arguments import verb
+from .arguments import check_usage, verb
 from .files import PICTURE, progress_bar, say_written, show, whole
 
 _MOST_PICKS = 6
@@ -35,8 +35,7 @@ def map_(folder: str, pictures: tuple[str, ...], shown: str, picks: tuple[str, .
     swept = Folder(folder)
     study = study_of(swept.described())
     check_drawable(study, shown)
-    if picks and len(study.names) != 2:
-        raise click.UsageError('--pick needs a map of two parameters.')
+    check_usage((picks and len(study.names) != 2, '--pick needs a map of two parameters.'))
     if len(picks) > _MOST_PICKS:
         raise InputError('--pick', f'{len(picks)} times', f'given at most {_MOST_PICKS} times', 'pick fewer points')
     if not swept.is_complete:

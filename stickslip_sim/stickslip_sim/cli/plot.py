@@ -4,7 +4,7 @@
 
 import click
 
-from .arguments import SceneChanges, check_sources, run_of, scene_changes, scene_duration, sources_argument, verb
+from .arguments import SceneChanges, check_sources, run_of_source, scene_changes, scene_duration, sources_argument, verb
 from .files import PICTURE, check_picture, progress_bar, say_written, whole
 
 
@@ -31,7 +31,7 @@ def plot(sources: tuple[str, ...], window: str | None, limits: str | None, out: 
 
     asked = None if window is None else Window.of(window)
     check_sources(sources, duration, changes)
-    runs = {source: run_of(source, duration, changes) for source in sources}
+    runs = {source: run_of_source(source, duration, changes) for source in sources}
     for run in runs.values():
         for note in run.notes if run.is_recorded else ():
             print(f'note: {note}')

@@ -7,12 +7,12 @@ from pathlib import Path
 import click
 
 from . import completion
-from .arguments import SceneChanges, recorded_run, scene_changes, verb
+from .arguments import SceneChanges, recorded_run, scene_argument, scene_changes, verb
 from .files import FOLDER, new_folder, progress_bar, say_written, show
 
 
 @verb(short_help='Test a scene on measured runs it has not seen.')
-@click.argument('scene', metavar='SCENE', shell_complete=completion.complete_scenes)
+@scene_argument
 @click.argument('runs', nargs=-1, required=True, metavar='RUN...', shell_complete=completion.complete_folders)
 @click.option('--out', type=FOLDER, metavar='FOLDER', help='New folder for the report and pictures.')
 @scene_changes('Change a parameter of the scene.')

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import click
 
-from .arguments import SceneChanges, scene_argument, scene_changes, verb
+from .arguments import SceneChanges, check_usage, scene_argument, scene_changes, verb
 from .files import FOLDER, PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_text
 
 
@@ -31,10 +31,8 @@ def simulate(scene: str, changes: SceneChanges, duration: float, seed: int | Non
 
     The summary is omitted if something else is written to standard output ("-").
     """
-    if knots and events is None:
-        raise click.UsageError('--knots needs --events FILE.csv.')
-    if sample_period is not None and samples is None:
-        raise click.UsageError('--sample-period needs --samples FILE.csv.')
+    check_usage((knots and events is None, '--knots needs --events FILE.csv.'),
+                (sample_period is not None and samples is None, '--sample-period needs --samples FILE.csv.'))
     from ..report.values import json_text
     from ..runs import simulate as simulate_sampled
     from ..runs import simulate_events
@@ -60,8 +58,6 @@ def simulate(scene: str, changes: SceneChanges, duration: float, seed: int | Non
     texts = [(receipt, [json_text(run.receipt, 2)]), (events, event_lines(run.events, knots)),
              (samples, sample_lines(run.sample_blocks()))]
     for path, lines in sorted(texts, key=lambda text: text[0] == STDOUT):    # its reader may leave early
-        if path is not None:
-            write_text(path, lines)
-    if STDOUT not in (receipt, events, samples):
-        show(run_report(run))
+        write_text(path, lines)
+    show(run_report(run), receipt, events, samples)
     say_written(events, samples, bag, receipt, plot)

@@ -5,7 +5,7 @@
 import click
 
 from .arguments import SceneChanges, controller_options, scene_changes, verb
-from .files import PICTURE, STDOUT, TEXT, draw, progress_bar, say_written, show, write_json
+from .files import PICTURE, TEXT, draw, progress_bar, say_written, show, write_json
 
 
 @verb(short_help='Show the stability margins of your controller.')
@@ -31,7 +31,6 @@ def tune(controller: str, scene: str, changes: SceneChanges, feed: float | None,
     with progress_bar('simulating') as progress:
         found = tuned(own, changes.load(scene), feed, rate, duration, progress)
     draw(plot, found.plot)
-    if json_file != STDOUT:
-        show(tuning_report(found))
+    show(tuning_report(found), json_file)
     write_json(json_file, tuning_values(found))
     say_written(plot, json_file)

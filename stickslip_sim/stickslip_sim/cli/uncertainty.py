@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from .arguments import Members, SceneChanges, command_line, scene_argument, study_options, verb
+from .arguments import Members, SceneChanges, check_usage, command_line, scene_argument, study_options, verb
 from .critical import range_given
 from .files import PICTURE, check_new_folder, new_folder, progress_bar, say_written, show, whole, write_json, write_text
 
@@ -30,7 +30,9 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
     FOLDER receives uncertainty.json and a table of all points.  Ctrl-C keeps the finished points.  With --of, the
     result is the spread of a critical value, such as the critical feed; such a study cannot be resumed.
     """
-    _check(critical, between, duration, resume)
+    check_usage((critical is None and between is not None, '--between needs --of A.B.'),
+                (critical is not None and (duration is not None or resume),
+                 '--of does not take --duration or --resume: each point runs until its motion settles.'))
     from ..scene.load import named
     from ..study import Saltelli, Study, report
     from ..study import critical as values_of
@@ -70,11 +72,3 @@ def uncertainty(scene: str, file: str, critical: str | None, between: str | None
                 draw_critical_spread(spread, spreads, str(temporary))
     show(said)
     say_written(result, plot)
-
-
-def _check(critical: str | None, between: str | None, duration: float | None, resume: bool) -> None:
-    """Raise UsageError on options that do not go together."""
-    if critical is None and between is not None:
-        raise click.UsageError('--between needs --of A.B.')
-    if critical is not None and (duration is not None or resume):
-        raise click.UsageError('--of does not take --duration or --resume: each point runs until its motion settles.')

@@ -4,8 +4,8 @@
 
 import click
 
-from .arguments import SceneChanges, recorded_run, run_argument, scene_changes, verb
-from .files import FOLDER, new_folder, progress_bar, say_written, show
+from .arguments import SceneChanges, check_usage, recorded_run, run_argument, scene_changes, verb
+from .files import FOLDER, end_with, new_folder, progress_bar, say_written, show
 
 
 @verb(short_help='Repeat a recorded run bit by bit, or ask "what if".')
@@ -19,12 +19,10 @@ def verify(run: str, changes: SceneChanges, out: str | None) -> None:
     Prints "identical", or the first difference with exit code 3.  With --set, the same commands drive a changed scene,
     and both runs are compared.
     """
-    if out is not None and not changes.overrides:
-        raise click.UsageError('--out needs --set A.B=VALUE.')
+    check_usage((out and not changes.overrides, '--out needs --set A.B=VALUE.'))
     from ..check import verification
     from ..check.remake import doubts_about, feedback_note, other_run, other_scene
     from ..check.report import beside_table, verdict_report, write_what_if
-    from ..core.errors import VerdictError
     from ..report.model import NOTE, Sentence
 
     recorded = recorded_run(run)
@@ -45,5 +43,4 @@ def verify(run: str, changes: SceneChanges, out: str | None) -> None:
             with new_folder('--out', out) as folder:
                 write_what_if(folder, given, recorded, other)
             say_written(out)
-    if verdict.difference:
-        raise VerdictError(f'{run} differs from its re-simulation at {verdict.difference}')
+    end_with(f'{run} differs from its re-simulation at {verdict.difference}' if verdict.difference else '')

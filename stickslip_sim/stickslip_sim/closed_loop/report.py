@@ -4,21 +4,53 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..check.limits import Limits
+from ..check.report import check_report, checks_as_values, complaint, junit_text
 from ..report.model import NOTE, Part, Sentence, Table
 from ..report.quantity import counted, quantity
 from ..report.values import versions
+from ..runs.report import run_report
 from ..study.report import percentiles_table
 from .linear_loop import MOST_DELAY, LinearLoop, friction_slope
+from .loop import ClosedLoopRun
 from .many import ClosedLoops
+from .study import LoopStudy
 from .tuning import OTHER, PARTS, Swing, Tuning
 
 _ROWS = 20               # of the matrix on a terminal
 _REASONS = 5
+_OF_CHANCE = 'encoder.noise', 'friction.static.scatter', 'friction.static.scatter_run'
+
+
+class LoopOutcome(NamedTuple):
+    """What one loop or many came to: how it is drawn, for people, as JSON and JUnit XML, and the limits it misses."""
+
+    draw: Callable[[Path], object]
+    report: Iterable[Part]
+    values: Mapping[str, Any]
+    complaint: str
+    junit: str = ''
+
+
+def outcome_of_run(run: ClosedLoopRun, limits: Limits | None, limits_file: str) -> LoopOutcome:
+    """Return what a run came to, and its check against limits of a file; raises InputError where they do not fit."""
+    checks = [] if limits is None else [run.check(limits)]
+    return LoopOutcome(run.plot, [*run_report(run), *(part for one in checks for part in check_report(one))],
+                       {'receipt': run.receipt, **(checks_as_values(checks) if checks else {})},
+                       ''.join(complaint(one, limits_file) for one in checks), junit_text(checks) if checks else '')
+
+
+def outcome_of_loops(found: ClosedLoops, limits_file: str | None) -> LoopOutcome:
+    """Return what many loops came to."""
+    failed = found.study.count - found.pass_rate.passed if limits_file else 0
+    return LoopOutcome(found.plot, loops_report(found), found.values(),
+                       f'{failed} of {found.study.count} points do not pass {limits_file}' if failed else '')
 
 
 def loops_report(found: ClosedLoops) -> Iterator[Part]:
@@ -32,12 +64,21 @@ def loops_report(found: ClosedLoops) -> Iterator[Part]:
     yield from _limits(found)
     yield from _matrix(found)
     yield _percentiles(found)
+    if _has_chance(study):
+        yield Sentence(f'all points have the seed of the scene, {study.scene.seed}: the same noise, losses and scatter',
+                       NOTE)
     for i, reason in list(found.reasons.items())[:_REASONS]:
         at = ', '.join(f'{name} = {number:g}' for name, number in found.point(i).items())
         yield Sentence(f'point {i} ({at}): {reason}', NOTE)
     failed = sum(word not in ('passed', 'limits missed') for word in found.outcomes)
     if failed > _REASONS:
         yield Sentence(f'{failed - _REASONS} more points failed: see column outcome', NOTE)
+
+
+def _has_chance(study: LoopStudy) -> bool:
+    """Whether random numbers have a part in the runs."""
+    lossy = {'encoder_dropout', 'command_loss'} & {fault.kind for fault in study.scene.rig.faults}
+    return bool(lossy) or any(study.scene.values.get(name) or name in study.names for name in _OF_CHANCE)
 
 
 def _limits(found: ClosedLoops) -> Iterator[Part]:

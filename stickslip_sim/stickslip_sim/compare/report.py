@@ -65,6 +65,8 @@ def write_comparison(given: Sequence[Run | Scene], sources: Sequence[str], durat
     Returns it for people, and the statements that apply to a run and do not hold.  Where a run was measured, the others
     are compared with it alone.
     """
+    for one in given:    # what cannot be read is refused before the work begins
+        _ = isinstance(one, Scene) or (one.begin, one.events, isinstance(one, MeasuredRun) or one.scene)
     measured = next((one for one in given if isinstance(one, MeasuredRun)), None)
     if measured is not None:
         followed = [as_measured(one, source, measured, duration) if isinstance(one, Scene) else one
