@@ -11,12 +11,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from ..axis import CompliantContact, InitialState
+from ..axis import Axis, CompliantContact, Friction, InitialState
 from ..core.arrays import Numbers
 from ..core.errors import InputError, StickslipError
 from ..core.input_profile import InputProfile, constant
 from ..core.time_grid import Instants
 from ..core.types import Event, Instant, Sample
+from ..friction import StaticLaw, StaticLawKind
 from ..friction.kinetic import MAX_BREAKPOINTS
 from ..friction.refine import Breakpoint, shape_table
 from ..friction.shapes import Decay, Shape
@@ -286,18 +287,19 @@ class AxisModel:
             deflection = _BELOW * motion.direction * held / dynamics.axis.contact.stiffness
         return InitialState(position, 0.0, 0.0, stretch, deflection)
 
-    def samples(self, dynamics: Dynamics, begin: float, initial: InitialState, at: Instants, delay: float = 0.0
-                ) -> Numbers | None:
+    def samples(self, dynamics: Dynamics, begin: float, initial: InitialState, at: Instants, delay: float = 0.0,
+                held: float | None = None) -> Numbers | None:
         """Return rows of samples from a state at `begin` (s) on, at times since then; None if the solver gives up.
 
-        They are those of a `delay` (s) before; before the state the slider moves evenly.
+        They are those of a `delay` (s) before; before the state the slider moves evenly.  Up to it the contact `held`
+        so much, a coefficient, whatever the static law says.
         """
         early = at.seconds + at.fractions - delay
         at = at if delay == 0.0 else instants_of(np.maximum(early, 0.0))
         rows = np.empty((len(at.seconds), len(Sample._fields)))
         duration = float(at.seconds[-1] + at.fractions[-1])
         try:
-            self._simulator(dynamics, begin, initial, duration, True).take_samples(at, rows, with_events=False)
+            self._simulator(dynamics, begin, initial, duration, True, held).take_samples(at, rows, with_events=False)
         except StickslipError:
             self._running = _Latest()
             return None
@@ -316,17 +318,25 @@ class AxisModel:
             return None
 
     def _simulator(self, dynamics: Dynamics, begin: float, initial: InitialState, duration: float,
-                   is_kept: bool = False) -> Simulator:
-        """Return a simulator from a state on; one that is kept is begun anew while the dynamics are the same."""
+                   is_kept: bool = False, held: float | None = None) -> Simulator:
+        """Return a simulator from a state on; one that is kept is begun anew while the dynamics are the same.
+
+        The excess of friction of a slip is by what the contact `held` before, which has let go.
+        """
         self.runs += 1
         inputs = (self._from(dynamics.drive, 'drive', begin, duration),
                   self._from(dynamics.force, 'force', begin, duration))
         if is_kept and self._running.key is dynamics and dynamics.load is None:
             found: Simulator = self._running.made
+            if held is not None:
+                found.change_axis(_holding(dynamics.axis, held))
             found.restart(initial, *inputs)
-            return found
-        load = shifted(dynamics.load, begin, duration) if dynamics.load else None
-        found = Simulator(dynamics.axis, initial, *inputs, load=load)
+        else:
+            load = shifted(dynamics.load, begin, duration) if dynamics.load else None
+            found = Simulator(dynamics.axis if held is None else _holding(dynamics.axis, held), initial, *inputs,
+                              load=load)
+        if held is not None:
+            found.change_axis(dynamics.axis)
         if is_kept:
             self._running.key, self._running.made = dynamics, found
         return found
@@ -349,6 +359,15 @@ class AxisModel:
             self._of_inputs[key] = make()
         found: _Made = self._of_inputs[key]
         return found
+
+
+def _holding(axis: Axis, coefficient: float) -> Axis:
+    """Return an axis whose contact holds so much in both directions, and not less than kinetic friction."""
+    def with_static(friction: Friction) -> Friction:
+        law = StaticLaw(StaticLawKind.CONSTANT, max(coefficient, friction.kinetic.coefficients[0]), 0.0)
+        return replace(friction, static=law, backward=friction.backward and with_static(friction.backward))
+
+    return replace(axis, friction=with_static(axis.friction))
 
 
 class TrialMotion:

@@ -54,7 +54,9 @@ _MOST = 3.0      # standard deviations of a speed that noise of a force has made
 # periods from the last reading of a rest to the times that are tried for a break-away, and from the best to others
 _NEAR, _NEARER = np.linspace(-20.0, 2.0, 45), np.linspace(-0.5, 0.5, 21)
 _APART, _TINY = 0.2, 1e-300   # of a period, for a derivative
+_FINE, _TURNS = 0.05, 4       # of a period, the last steps of these times; at most so many of Newton's beyond
 _CREEPS = 1e-9   # m/s: a slider that has just broken away
+_BELOW = 1.0 - 1e-12   # of the force: so much the contact held
 _LEAST_FORCE = 1e-6   # of the largest force: no break-away is known better
 _WORSE = 1.3     # times what is known of a force and a time: parabolas, and times, are chosen by the readings
 _EVEN = 12.0**0.5   # the standard deviation of what is anywhere in a step is the step over that
@@ -283,8 +285,16 @@ class FitProblem:
                       if time >= 0.0 and one.direction * dynamics.force.value_at(time) > kinetic}
             best = min(costs, key=costs.__getitem__, default=best)
         time, deviation = _mean(costs) if len(costs) > 1 else (best, period)
-        later = max(deviation, _APART * period)
-        ways = [(after - here) / later for here, after in zip(off(time), off(time + later), strict=True)]
+        for _ in range(_TURNS):   # a time that is known better than the grid is fine
+            later, here = max(deviation, _APART * period), off(time)
+            ways = [(after - own) / later for own, after in zip(here, off(time + later), strict=True)]
+            if deviation >= _FINE * period:
+                break
+            way, left = np.concatenate(ways), np.concatenate(here)
+            nearer = time - float(way @ left) / max(square_cost(way), _TINY)
+            if not square_cost(np.concatenate(off(nearer))) < square_cost(left):
+                break
+            time = nearer
         shift = sum(float(place @ here) / max(square_cost(place), _TINY)
                     for place, here in zip(places, off(time, plain), strict=True) if place is not None)
         return (one._replace(time=time, place=one.place + shift, deviation=deviation),
@@ -473,19 +483,22 @@ class FitProblem:
 
     def _columns(self, stretch: MeasuredStretch, dynamics: Dynamics, values: Numbers) -> list[Numbers] | None:
         """Return what the sensors would have measured of a stretch, (n,) for each channel; None without a motion."""
-        late, begin = 0.0, stretch.begin
+        late, begin, held = 0.0, stretch.begin, None
         if (start := stretch.break_away) is None:
             initial = self.model.state_after(stretch.before, dynamics, values)
         else:
             offset, scale = self.model.gain(values, 'position')
             late = start.time - float(self.measurement.times[start.first])
-            initial = InitialState((start.place - offset) / scale, start.direction * _CREEPS, 0.0)
+            held = _BELOW * start.direction * dynamics.force.value_at(begin) / dynamics.axis.normal_force
+            lets_go = held >= dynamics.axis.friction.along(start.direction).kinetic.coefficients[0]
+            initial = InitialState((start.place - offset) / scale, 0.0 if lets_go else start.direction * _CREEPS, 0.0)
+            held = held if lets_go else None
         columns: list[Numbers] = []
         rows: dict[float, Numbers | None] = {}
         for channel in self.measurement.channels:
             delay = late + self.model.delay(values, channel.name)
             if delay not in rows:
-                rows[delay] = self.model.samples(dynamics, begin, initial, stretch.at, delay)
+                rows[delay] = self.model.samples(dynamics, begin, initial, stretch.at, delay, held)
             if (own := rows[delay]) is None:
                 return None
             column, (offset, scale) = own[:, OUTPUT_PLACES[channel.name]], self.model.gain(values, channel.name)

@@ -37,7 +37,7 @@ from ..core.arrays import Numbers
 from .motions import MeasuredMotion, StillRest, still_rests
 from .readings import (
     LINE,
-    SMALLEST,
+    SMALLEST_FORCE,
     Channel,
     InputReadings,
     SensorReadings,
@@ -226,6 +226,7 @@ def with_static_times(friction: Friction, factor: float) -> Friction:
 
 _LENGTHS = 5, 9, 17, 33, 65   # readings in a parabola: the longest one that follows the force is taken
 _CHANCE = 4.0   # standard deviations of a mean square: residuals of a parabola up to that are noise
+_EVEN = 0.3     # of a second difference: so far those beside it may be from one of a force that turns evenly
 _FEWEST = 100   # readings at rest, of which the noise is taken
 
 
@@ -246,14 +247,29 @@ def with_quiet_rests(measurement: SensorReadings, motions: Sequence[MeasuredMoti
     until = [begin if rest is None else rest.last + 1 for begin, rest in zip(begins, found, strict=True)]
     rests = [slice(*ends) for ends in zip(since, (*until, len(times)), strict=True)]
     thirds = [np.diff(values[rest], 3) for rest in rests]
-    noise, weights = noise_of(values, quantum), weights_of(values, quantum)
+    noise, weights = noise_of(values, quantum, SMALLEST_FORCE), weights_of(values, quantum)
     if sum(map(len, thirds)) >= _FEWEST:
-        noise = min(max(noise_of_thirds(np.concatenate(thirds), quantum), SMALLEST * float(np.ptp(values))), noise)
+        least = SMALLEST_FORCE * float(np.ptp(values))
+        noise = min(max(noise_of_thirds(np.concatenate(thirds), quantum), least), noise)
+    values = _bent(values)
     deviations = np.full(len(times), noise)
     for rest in rests:
         values[rest], deviations[rest] = _smoothed(values[rest], noise, weights[rest])
     return replace(measurement, force=InputReadings(times, values, LINE).profile(), force_noise=noise,
                    force_deviations=deviations)
+
+
+def _bent(values: Numbers) -> Numbers:
+    """Return readings (n,) through which lines do what the force does that turns evenly at them (Numerov's rule).
+
+    A line through two readings is off by a twelfth of the second difference, always to the same side.
+    """
+    turns = np.diff(values, 2)
+    apart = np.abs(np.diff(turns))
+    is_even = np.maximum(apart[:-1], apart[1:]) < _EVEN * np.abs(turns[1:-1])
+    found = values.copy()
+    found[2:-2] -= np.where(is_even, turns[1:-1], 0.0) / 12.0
+    return found
 
 
 def _smoothed(values: Numbers, noise: float, weights: Numbers) -> tuple[Numbers, Numbers]:
