@@ -73,7 +73,7 @@ setup(
     name=NAME,
     cmdclass=COMMANDS,
     ext_modules=extensions(),
-    version='1.0.1',
+    version='2.0.0',
     description='Feed-axis simulator with stick-slip friction: exact engine, ROS 2 node and command-line tool',
     maintainer='The stickslip developers',
     maintainer_email='stickslip@example.org',

@@ -2,4 +2,4 @@
 # SPDX-License-Identifier: Apache-2.0
 """The version of the package."""
 
-__version__ = '1.0.1'
+__version__ = '2.0.0'
