@@ -53,6 +53,9 @@ COMMANDS: Mapping[str, str] = {        # by the name of the part of the page
     'compare': f'compare {RUNS}/m3 {RUNS}/found/identified.yaml --set friction.scale=0.9925 --out {RUNS}/beside',
 }
 
+LEFT_OUT = re.compile(r'(?:^(?:(?:note|m3): | +(?:velocity and acc|87 readings|note: (?:2 runs|the drive))|not best'
+                      r'|fewer than).*\n)+', re.MULTILINE)
+
 
 def main() -> None:
     """Make the exports; without `data`, write the page and draw its picture, too."""
@@ -98,9 +101,9 @@ def steps() -> list[tuple[str, str]]:
     return [('import', first), *more, *((name, command) for name, command in COMMANDS.items() if name != 'import')]
 
 
-def without_time(text: str) -> str:
-    """Return what a command printed without the time that it took."""
-    return re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE)
+def shortened(text: str) -> str:
+    """Return what a command printed without the time that it took, and `...` for lines that the page can do without."""
+    return LEFT_OUT.sub('...\n', re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE))
 
 
 def page() -> None:
@@ -111,7 +114,7 @@ def page() -> None:
     replace_generated(PAGE, quoted('\n'.join(head)), 'export')
     replace_generated(PAGE, f'```yaml\n{pathlib.Path(EXAMPLES, "free.yaml").read_text(encoding="utf-8")}```\n', 'free')
     for name, command in steps():
-        printed = without_time(said(command))
+        printed = shortened(said(command))
         if name:
             replace_generated(PAGE, f'{shown(command)}\n\n{quoted(printed)}', name)
     drifted = changed(load_scene(str(RUNS / 'found/identified.yaml')), {'friction.scale': 0.9925})

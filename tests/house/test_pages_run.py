@@ -167,7 +167,7 @@ def test_the_worked_axis(clone: Path, capsys: Capture) -> None:
     coarser = {'identify': ' --set friction.kinetic.tolerance=1e-3'}    # than the default of 1e-4: for half the time
     said = {name: done(capsys, command + coarser.get(name, '')) for name, command in worked_axis.steps()}
     for name in ('import', 'plot', 'friction'):
-        assert quoted(said[name]) in part_of(WORKED, name), name
+        assert quoted(worked_axis.shortened(said[name])) in part_of(WORKED, name), name
     printed = part_of(WORKED, 'identify')
     there, here = TestIdentification().found_in(printed), TestIdentification().found_in(said['identify'])
     report = json.loads((clone / worked_axis.RUNS / 'found/report.json').read_text(encoding='utf-8'))
