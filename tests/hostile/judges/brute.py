@@ -168,10 +168,15 @@ def _brief(event: Event) -> BruteEvent:
 
 
 def _plain(events: Sequence[BruteEvent], moment: float) -> list[BruteEvent]:
-    """Return the events without a coast of a moment behind a break-away, which rounding of the data makes."""
-    return [event for k, event in enumerate(events) if not (
-        k and event.kind == EventKind.ACCELERATE and events[k - 1].kind == EventKind.BREAKAWAY
-        and event.time - events[k - 1].time <= moment)]
+    """Return the events without coasts of a moment, which rounding makes: after a break-away, or as the excess ends."""
+    kept: list[BruteEvent] = []
+    for event in events:
+        last = kept[-1] if kept and event.time - kept[-1].time <= moment else None
+        if last is not None and event.kind == EventKind.DECELERATE and last.kind == EventKind.COAST:
+            kept.pop()
+        if not (last is not None and event.kind == EventKind.ACCELERATE and last.kind == EventKind.BREAKAWAY):
+            kept.append(event)
+    return kept
 
 
 def is_linear(run: Run) -> bool:
