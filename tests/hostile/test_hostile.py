@@ -15,7 +15,7 @@ from stickslip_sim.proof.judges import Find
 from tests.hostile.attack import Counts, Found, judge_again, one_round, read, write
 from tests.hostile.case import Case, Run, Undecided, Values, run
 from tests.hostile.generators import GENERATORS, draw
-from tests.hostile.judges import JUDGES, guards, reference
+from tests.hostile.judges import JUDGES, brute, guards, reference
 
 pytestmark = pytest.mark.slow
 
@@ -121,21 +121,6 @@ KNOWN = {
         | draw.kinetic([0.0, 0.0003903367743122229, 0.00039033692996265406],
                        [0.6364111565212552, 0.636411138952865, 0.9546167347818828])
         | draw.constant(0.00022595791444022452), 2.72),
-    'an excess that is all but over where a slip turns': (
-        draw.axis(1.463003200302933, 512516.9231768221, 363.90652351592547, 2.8079148958427385) | draw.contact()
-        | draw.static(0.3348569359482371, 0.3846801227287415, 4.267716189862824, 'hyperbolic')
-        | draw.kinetic([0.0, 5.322119573139175e-06, 6.324362316304526e-05, 0.000132575718390839, 0.0009397183616708171],
-                       [0.3348569359482371, 0.11787684502198009, 0.31789254470694345, 0.16511913370099007,
-                        0.1429558336197235], branches=True)
-        | {'friction.excess.velocities': [0.0, 4.659018917980813e-05, 0.00011594950829491776, 0.0021993639934371405],
-           'friction.excess.fractions': [1.0, 1.7318030923297832e-09, 5.713425160865966e-12, 0.0]}
-        | draw.steps('force', 'forces', [0.0, 0.030834106252804572, 0.03445920047165791],
-                     [0.0, -0.28985198359895925, 0.03534586053722482])
-        | {'drive.course': 'table', 'drive.times': [0.0, 0.04138125056947485, 0.04413934535360586, 0.09148350099379322],
-           'drive.velocities': [4.9433530905218055e-05] * 2 + [-0.00016477843635072685] * 2,
-           'friction.static.scatter': 0.005416328200905912, 'friction.static.scatter_run': 0.1,
-           'seed': 179572653186467011, 'initial.velocity': 0.00016477843635072685,
-           'initial.rest_time': 0.0}, 0.100570028182785),
     "Kato's law all but exponential under a sinusoid": (
         KATO | {'drive.amplitudes': [0.0005], 'drive.frequencies': [3.0], 'drive.phases': [0.1]}, 1.0),
 }
@@ -319,6 +304,14 @@ def test_what_rounding_of_the_data_may_change_is_undecided_and_no_more(scene: st
     events[k] = events[k]._replace(fraction=events[k].fraction + 1e-8)
     with pytest.raises(Find):
         reference.compare(done.parts, events, len(events))
+
+
+def test_coasts_of_a_moment_are_passed_over_and_longer_ones_are_not() -> None:
+    def slip(coasting: float) -> list[brute.BruteEvent]:
+        return [brute.BruteEvent(at, kind, Mode.COASTING, -1, -1e-3, False)
+                for at, kind in ((1.0, EventKind.COAST), (1.0 + coasting, EventKind.DECELERATE))]
+    assert brute.plain(slip(1e-15), 1e-9) == slip(1e-15)[1:]
+    assert brute.plain(slip(1e-6), 1e-9) == slip(1e-6)
 
 
 def test_a_find_is_written_and_judged_again(tmp_path: Path) -> None:

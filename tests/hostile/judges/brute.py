@@ -127,7 +127,7 @@ def compare(parts: Parts, events: Sequence[Event]) -> int:
         moved_parts = rounded_data(parts, 1, _OFF)
     except InputError:
         raise Undecided('its data have no order but for rounding') from None
-    right, other, seen = (_plain(one, moment) for one in (
+    right, other, seen = (plain(one, moment) for one in (
         brute_force(parts), brute_force(moved_parts), [_brief(event) for event in events]))
     for k in range(max(len(right), len(other), len(seen))):
         a, b = (one[k] if k < len(one) else None for one in (right, other))
@@ -167,7 +167,7 @@ def _brief(event: Event) -> BruteEvent:
     return BruteEvent(event.time, event.kind, event.mode, event.direction, event.velocity, False)
 
 
-def _plain(events: Sequence[BruteEvent], moment: float) -> list[BruteEvent]:
+def plain(events: Sequence[BruteEvent], moment: float) -> list[BruteEvent]:
     """Return the events without coasts of a moment, which rounding makes: after a break-away, or as the excess ends."""
     kept: list[BruteEvent] = []
     for event in events:
