@@ -41,7 +41,9 @@ class TestRefusedStart:
         file.write_text(text)
         with pytest.raises(InputError) as of_the_tool:
             load_scene(str(file))
-        assert refusal_of('sim_node', '--params-file', file) == f'sim_node: {of_the_tool.value}'
+        with pytest.raises(InputError) as of_the_node, axis_here('--params-file', file):
+            pass
+        assert str(of_the_node.value) == str(of_the_tool.value)
 
     @pytest.mark.parametrize(('name', 'value', 'reported'), [
         ('ROS_DOMAIN_ID', '9999', '0 to 232'), ('ROS_DOMAIN_ID', '-1', '0 to 232'), ('ROS_DOMAIN_ID', 'x', '0 to 232'),

@@ -7,6 +7,7 @@ import random
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -93,7 +94,7 @@ KINDS = ['plain', 'held', 'periods', 'sinusoids']
 
 
 @pytest.mark.parametrize('kind', KINDS)
-@pytest.mark.parametrize('calls', [1, 7, 3000, 4001])
+@pytest.mark.parametrize('calls', [1, 7, 4001])
 def test_a_walk_gives_the_bits_of_one_piece_after_the_other(kind: str, calls: int) -> None:
     one, other = make(kind), make(kind, ONE_BY_ONE)
     events = advance(one, calls)
@@ -132,31 +133,18 @@ def test_samples_through_pieces_have_the_bits_of_those_one_by_one(kind: str, rat
         assert other.event_counts == simulator.event_counts
 
 
-def test_a_run_that_gives_up_while_samples_are_taken_says_when() -> None:
-    ends = []
-    for solver in (exact.SOLVER, ONE_BY_ONE):
-        simulator = make('plain', doctored(solver))
-        at = instants(Fraction(1, 1000), 0, 2000)
-        with pytest.raises(UnsoundError, match='violates its own motion or energy balance at t = ') as failure:
-            simulator.take_samples(at, np.empty((2000, len(Sample._fields))))
-        assert 0.0 < simulator.time.seconds < 0.5
-        assert repr(simulator.time.seconds) in str(failure.value)
-        ends.append((str(failure.value), simulator.time, simulator.sample()))
-    assert ends[0] == ends[1]
-
-
 @pytest.mark.parametrize('kind', KINDS)
 def test_the_split_of_time_changes_no_bit(kind: str) -> None:
     whole = run_in(kind, 1)
-    assert all(run_in(kind, calls) == whole for calls in (2, 333, 4001))
+    assert all(run_in(kind, calls) == whole for calls in (333, 4001))
 
 
 @pytest.mark.skipif(hot_path.UNIT is None, reason='no compiled code in this source tree')
 def test_plain_python_gives_the_same_bits(in_a_process: Program) -> None:
     program = ('from tests.simulation.test_long_profiles import KINDS, run_in\n'
-               'print(*(line for kind in KINDS for line in run_in(kind, 3)), sep="\\n")')
+               'print(*(line for kind in KINDS[1:] for line in run_in(kind, 3)), sep="\\n")')    # pieces are in all
     assert in_a_process(program, compiled=False).split('\n')[:-1] == [
-        line for kind in KINDS for line in run_in(kind, 3)]
+        line for kind in KINDS[1:] for line in run_in(kind, 3)]
 
 
 @pytest.mark.parametrize('solver', [exact.SOLVER, ONE_BY_ONE, IN_PYTHON], ids=['walk', 'one by one', 'in Python'])
@@ -197,12 +185,15 @@ def doctored(solver: Solver) -> Solver:
     return solver._replace(walk=spoilt_walk)   # type: ignore[attr-defined, no-any-return]
 
 
-def test_a_run_that_gives_up_in_mid_walk_says_when_and_stands_there() -> None:
+@pytest.mark.parametrize('takes_samples', [False, True])
+def test_a_run_that_gives_up_in_mid_walk_says_when_and_stands_there(takes_samples: bool) -> None:
     ends = []
+    at, rows = instants(Fraction(1, 1000), 0, 2000), np.empty((2000, len(Sample._fields)))
     for solver in (exact.SOLVER, ONE_BY_ONE):
         simulator = make('plain', doctored(solver))
+        go = partial(simulator.take_samples, at, rows) if takes_samples else partial(simulator.advance, instant(2.0))
         with pytest.raises(UnsoundError, match='violates its own motion or energy balance at t = ') as failure:
-            simulator.advance(instant(2.0))
+            go()
         assert 0.0 < simulator.time.seconds < 0.5
         assert repr(simulator.time.seconds) in str(failure.value)
         ends.append((str(failure.value), simulator.time, simulator.sample()))

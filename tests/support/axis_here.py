@@ -37,11 +37,12 @@ def axis_here(*words: str | Path) -> Iterator[AxisHere]:
         services[name.split('/')[-1]] = callback
 
     args = ros_args(*words)
+    given = GivenParameters.read(args)
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     try:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr(Node, 'create_service', offer)
-            node = FeedAxis(GivenParameters.read(args), lambda: False)
+            node = FeedAxis(given, lambda: False)
         node.begin()
         try:
             yield AxisHere(node, services)

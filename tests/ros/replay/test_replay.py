@@ -207,7 +207,7 @@ class TestTime:
 
 class TestProcess:
     @pytest.mark.parametrize(('number', 'words'), [
-        (signal.SIGTERM, PAUSED), *((signal.SIGINT, words) for words in (PAUSED, ('loop:=true',), ('delay:=1000.0',)))])
+        (signal.SIGTERM, PAUSED), (signal.SIGINT, ('loop:=true',)), (signal.SIGINT, ('delay:=1000.0',))])
     def test_signals(self, bag: Path, number: int, words: tuple[str, ...]) -> None:
         with client() as viewer, replaying(bag, *words, afresh=number == signal.SIGTERM) as process:
             assert call(viewer, 'is_paused').success is (words == PAUSED)
