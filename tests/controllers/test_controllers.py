@@ -215,11 +215,6 @@ def test_positioning_ends_where_it_should_with_both() -> None:
         assert its.overshoot < 5e-5
 
 
-def test_the_same_run_twice() -> None:
-    first, second = (close_loop(controllers()['compensated'], SLOW_FEED, 2.0) for _ in range(2))
-    assert first == second
-
-
 def test_the_page_has_what_is_measured_today() -> None:
     assert '\n'.join(by_model()) in PAGE.read_text(encoding='utf-8')
 

@@ -50,13 +50,6 @@ def run(pacer: Pacer, steps: range) -> list[int]:
 
 
 class TestGrid:
-    @pytest.mark.parametrize(('rate', 'step', 'expected'), [
-        (1000.0, 0, (0.0, 0.0)), (1000.0, 1, (0.0, 0.001)), (1000.0, 1000, (1.0, 0.0)), (1000.0, 1234, (1.0, 0.234)),
-        (333.3, 3333, (10.0, 0.0)), (0.1, 1, (10.0, 0.0)), (3.0, 2, (0.0, 2 / 3)),
-    ])
-    def test_instants(self, rate: float, step: int, expected: tuple[float, float]) -> None:
-        assert tuple(Grid(rate).instant(step)) == expected
-
     @given(st.floats(1.0, 2e4), st.integers(0, 10**12))
     def test_nothing_accumulates(self, rate: float, step: int) -> None:
         instant = Grid(rate).instant(step)

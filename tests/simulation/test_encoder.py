@@ -50,11 +50,6 @@ class TestPosition:
         assert reading is not None
         assert reading.slider_position == 0.25 * count
 
-    def test_offset_alone(self) -> None:
-        results, readings = measured(100, offset=1e-3)
-        assert [reading.slider_position for reading in readings] == [
-            result.sample.position + 1e-3 for result in results]
-
     def test_delay_in_steps(self) -> None:
         results, readings = measured(delay_steps=7, delay=0.007)
         for n, reading in enumerate(readings):
@@ -70,12 +65,6 @@ class TestVelocity:
             before = readings[max(n - k, 0)]
             assert reading.slider_velocity == (reading.slider_position - before.slider_position) * (RATE / k)
             assert reading.drive_velocity == (reading.drive_position - before.drive_position) * (RATE / k)
-
-    def test_comes_in_counts(self) -> None:
-        _, readings = measured(resolution=MICRON)
-        counts = [reading.drive_velocity / (MICRON * RATE) for reading in readings[1:]]
-        assert counts == pytest.approx([round(count) for count in counts], abs=1e-6)
-        assert statistics.fmean(counts) == pytest.approx(2.0, abs=2e-3)     # 2 mm/s
 
     def test_is_the_true_one_of_an_ideal_encoder(self) -> None:
         results, readings = measured(velocity_steps=5)
@@ -133,13 +122,6 @@ class TestFaults:
     def test_step_is_a_jump_of_the_velocity_where_it_is_computed(self) -> None:
         _, readings = measured(400, {300: [inject('encoder_step', value=1e-3)]}, resolution=MICRON)
         assert readings[300].slider_velocity == pytest.approx(1.0, abs=2e-3)     # 1 mm in a step
-
-    def test_dropout_leaves_out_a_share(self) -> None:
-        count = 4000
-        results = run(make(measures=True, seed=3), count + 1,
-                       {1: [inject('encoder_dropout', value=0.3, duration=math.inf)]})
-        missing = [result.step for result in results if result.measured is None]
-        assert len(missing) / count == pytest.approx(0.3, abs=4 * math.sqrt(0.21 / count))
 
     def test_dropouts_that_overlap_leave_out_more(self) -> None:
         count = 4000

@@ -52,13 +52,6 @@ FULL: dict[str, Any] = {
 
 class TestDeterminism:
     @pytest.mark.parametrize('seed', range(4))
-    def test_the_same_orders_give_the_same_bits(self, seed: int) -> None:
-        script = random_script(seed, STEPS)
-        first, second = (run(make(**FULL), STEPS, script) for _ in range(2))
-        assert bits(first) == bits(second)
-        assert len({result.sample.velocity for result in first}) > STEPS // 10
-
-    @pytest.mark.parametrize('seed', range(4))
     def test_reset_gives_the_same_run_again(self, seed: int) -> None:
         rig, script = make(**FULL), random_script(seed, STEPS)
         first = run(rig, STEPS, script)
@@ -197,12 +190,6 @@ class TestAtOnce:
         values = {'force_pulse': self.HELD, 'friction_scale': 2.0}
         results = run(make(STUCK, 0.0), 200, {10: [inject(kind, value=values[kind]) for kind in kinds]})
         assert [result.step for result in results if result.sample.external_force] == [*range(10, 60)]
-        assert [event for result in results for event in result.events] == []
-
-    def test_a_pulse_that_ends_as_friction_comes_back(self) -> None:
-        results = run(make(STUCK, 0.0), 200, {10: [inject('friction_scale', value=2.0)],
-                                               20: [force(self.HELD)],
-                                               60: [force(0.0)]})
         assert [event for result in results for event in result.events] == []
 
     def test_a_pulse_that_begins_as_friction_falls_breaks_away_once(self) -> None:

@@ -45,7 +45,6 @@ def faults(*given: tuple[str, float, float, float]) -> Changes:
 
 
 CASES = {
-    'ideal': Case('positioning', {}, pushes=True),
     'counted': Case('paper_fig7', {
         'encoder.resolution': 1e-6, 'encoder.delay': 0.003, 'encoder.noise': 2e-7, 'encoder.velocity_steps': 4,
         **faults(('encoder_dropout', 0.0, 0.2, 0.3), ('encoder_freeze', 0.1, 0.02, 0.0),
