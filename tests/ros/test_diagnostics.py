@@ -28,7 +28,6 @@ from tests.support.node_processes import (
     ended_at_once,
     executable,
     recording_into,
-    refusal_of,
     ros_args,
     running,
     with_small_files,
@@ -131,15 +130,6 @@ class TestGraphMonitor:
 
 
 class TestClock:
-    @pytest.mark.parametrize(('words', 'reported'), [
-        (['time.mode:=lockstep', 'use_sim_time:=true'], ['must be false on this node', 'lockstep']),
-        (['time.mode:=free_run', 'use_sim_time:=true'], ['must be false on this node', 'free_run']),
-        (['use_sim_time:=3'], ["'use_sim_time' to '3'"]),
-    ])
-    def test_refused_from_the_start(self, words: list[str], reported: list[str]) -> None:
-        line = refusal_of('sim_node', *words)
-        assert all(text in line for text in reported), line
-
     def test_its_own_is_not_followed_later(self) -> None:
         with axis_here('time.mode:=lockstep') as axis:
             answer = axis.set_parameters(use_sim_time=True)
@@ -213,13 +203,6 @@ class TestHealth:
         assert code == 1
         assert errors.startswith('health: /feed_axis is not well: recorder: ')
         assert len(errors.splitlines()) == 1
-
-    @pytest.mark.parametrize(('words', 'reported'), [
-        (['patience:=0.0'], 'patience = 0.0'), (['patence:=3.0'], 'did you mean patience?'),
-        (['--', 'now'], "argument = 'now'"),
-    ])
-    def test_refused(self, words: list[str], reported: str) -> None:
-        assert reported in refusal_of('health', *words)
 
     def test_a_verdict_is_by_the_worst(self) -> None:
         fine, slow, full = (DiagnosticStatus(name=name, level=level, message=f'{name} reported')

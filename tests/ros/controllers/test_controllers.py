@@ -41,24 +41,11 @@ LATCHED = QoSProfile(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 ATTEMPTS = 40
 
 
-class TestRefusedStart:
-    @pytest.mark.parametrize(('program', 'word', 'reported'), [
-        ('cascade_controller', 'moves.feed:=-0.001', ['moves.feed = -0.001', '>= 1e-12']),
-        ('cascade_controller', 'moves.fed:=0.001', ['moves.fed = 0.001', 'did you mean moves.feed?']),
-        ('cascade_controller', 'position_gain:=.nan', ['position_gain = nan']),
-        ('cascade_controller', 'integral_time:=0.0', ['integral_time = 0.0', 'or .inf']),
-        ('cascade_controller', 'compensation.share:=0.5', ['compensation.share = 0.5', 'one of moves.travel']),
-        ('compensating_controller', 'compensation.model:=paper_fig9', ['compensation.model', 'paper_fig8?']),
-    ])
-    def test_parameters(self, program: str, word: str, reported: list[str]) -> None:
-        line = refusal_of(program, word)
-        assert all(text in line for text in reported), line
-
-    @pytest.mark.parametrize('program', NAMES.values())
-    def test_help(self, program: str) -> None:
-        done = subprocess.run([executable(program), '--help'], capture_output=True, text=True, timeout=60, check=False)
-        assert (done.returncode, done.stderr) == (0, '')
-        assert done.stdout.startswith(f'usage: {program} ')
+@pytest.mark.parametrize('program', NAMES.values())
+def test_help(program: str) -> None:
+    done = subprocess.run([executable(program), '--help'], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, '')
+    assert done.stdout.startswith(f'usage: {program} ')
 
 
 OWN = str(ROOT / 'tests/support/own_controllers.py')

@@ -17,7 +17,7 @@ from stickslip_sim.ros.node.parameters import cores_of
 from stickslip_sim.scene.load import parse_scene
 from tests.support.axis_here import axis_here
 from tests.support.busy_machine import judged_by_time
-from tests.support.node_processes import assert_clean, ended_at_once, recording_into, running
+from tests.support.node_processes import assert_clean, recording_into, running
 from tests.support.rights import name_of, needs_fifo, policies, start_without_rights
 from tests.support.ros_nodes import live_axis
 from tests.support.waiting import wait_for
@@ -149,14 +149,6 @@ class TestScheduling:
                      afresh=True) as process:
             assert_refused(*process.wait(), 'require_real_time = True is refused: must be false, or all that is wanted'
                            ' granted; SCHED_FIFO 50 is not granted')
-
-    @pytest.mark.parametrize(('words', 'refusal'), [
-        (['thread_priority:=100'], 'thread_priority = 100 is refused: must be a whole number, >= 0 and <= 99'),
-        (['thread_priority:=50', 'time.mode:=lockstep'],
-         'thread_priority = 50 is refused: must be 0 with time.mode: lockstep'),
-    ])
-    def test_refused_starts(self, words: list[str], refusal: str) -> None:
-        assert_refused(*ended_at_once('sim_node', *words), refusal)
 
     def test_it_is_no_part_of_a_scene(self) -> None:
         scene = load_scene('paper_fig8')
