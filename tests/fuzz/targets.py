@@ -36,7 +36,7 @@ from tests.hostile.case import Case, Undecided, run
 from tests.hostile.generators import GENERATORS
 from tests.hostile.judges import reference
 from tests.support import made_up_bags, made_up_texts, small_recordings
-from tests.support.refusals import accepts_or_refuses
+from tests.support.made_up_texts import accepts_or_refuses
 from tests.support.repository import ROOT
 from tests.support.time_and_memory import within
 

@@ -54,6 +54,23 @@ print(recorder.failure, recorder.written, sep='|')
 '''
 
 
+RECORD_UNTIL_KILLED = '''    # a message a millisecond, and how many were handed over on standard output
+import sys, time
+from stickslip_sim.recording import RecorderThread, Split, open_run
+from tests.support.recorded_runs import FACTS
+
+recorder = RecorderThread(open_run(sys.argv[1], FACTS, split=Split(max_duration=int(sys.argv[2]))))
+start, step = time.monotonic(), 0
+while True:
+    while step < (time.monotonic() - start) * 1000.0:
+        step += 1
+        recorder.put(0, step.to_bytes(8, 'little') * 12, step * 1_000_000, step * 1_000_000, step)
+        if step % 50 == 0:
+            print(step, flush=True)
+    time.sleep(0.001)
+'''
+
+
 def split_bag(folder: Path, split: Split, count: int = 100, size: int = 0) -> Path:
     """Record messages a step apart, none twice the same."""
     writer = open_run(folder, FACTS, split=split)
@@ -146,8 +163,8 @@ class TestSplits:
         assert sum(bag.counts.values()) == 40
 
     def test_kill_in_the_middle_of_splits(self, tmp_path: Path) -> None:
-        program = subprocess.Popen([sys.executable, '-m', 'tests.support.record_until_killed', str(tmp_path / 'run'),
-                                    str(20 * STEP)], cwd=ROOT, stdout=subprocess.PIPE, text=True)
+        program = subprocess.Popen([sys.executable, '-c', RECORD_UNTIL_KILLED, str(tmp_path / 'run'), str(20 * STEP)],
+                                   cwd=ROOT, stdout=subprocess.PIPE, text=True)
         assert program.stdout is not None
         while int(program.stdout.readline()) < 700:
             pass

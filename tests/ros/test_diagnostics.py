@@ -24,7 +24,6 @@ from stickslip_sim.ros.node.clock import ClockIn
 from stickslip_sim.ros.node.graph_monitor import PublisherWatch
 from tests.support.axis_here import axis_here
 from tests.support.node_processes import (
-    attentive,
     ended_at_once,
     executable,
     recording_into,
@@ -56,7 +55,7 @@ def no_trouble(axis: Client) -> None:
 
 class TestGraphMonitor:
     def test_controllers_come_and_go(self) -> None:
-        with live_axis(*ON, prepare=attentive) as (process, axis):
+        with live_axis(*ON) as (process, axis):
             axis.stop_commanding()
             with hardware_interface(always(0.003), name='first'):
                 with hardware_interface(always(0.004), name='second'):
@@ -89,7 +88,7 @@ class TestGraphMonitor:
     def test_what_a_time_out_has_ended_does_not_stay_in_force(self) -> None:
         """Nor does a force trouble anybody: no time-out ends it, and it is meant to act until the next."""
         wanted = ('command.timeout:=0.05', 'command.on_timeout:=ramp_to_zero')
-        with live_axis(*SLOW, *wanted, prepare=attentive) as (process, axis):
+        with live_axis(*SLOW, *wanted) as (process, axis):
             axis.send_velocity(0.004)
             axis.send_force(300.0)
             axis.status('command', lambda values: values['timed out'] == '1' and values['force received'] == '1')
@@ -120,7 +119,7 @@ class TestGraphMonitor:
 
     def test_one_that_never_sends_is_reported(self) -> None:
         """They compare positions, and none is commanded: at position 0, or for ever, there is no difference."""
-        with live_axis(*ON, 'drive.velocity:=0.0', prepare=attentive) as (_, axis):
+        with live_axis(*ON, 'drive.velocity:=0.0') as (_, axis):
             for rule in (Rule.ALL_POSITIONS, Rule.COMMANDED_POSITIONS):
                 with hardware_interface(always(0.003), near_is_silent(), rule) as hardware:
                     status = trouble(axis, 'sends nothing')

@@ -219,27 +219,24 @@ def break_method(module: str, owner: str, method: str) -> None:
     setattr(getattr(import_module(f'stickslip_sim.{module}'), owner), method, broken)
 
 
-@pytest.mark.parametrize('place', PLACES)
-def test_a_defect_is_reported_and_shown_where(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str) -> None:
+@pytest.mark.parametrize(('place', 'debug'), [*((place, '0') for place in PLACES), ('executor', '1')])
+def test_a_defect_is_reported_and_shown_where(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str, debug: str
+                                              ) -> None:
     write_bag(tmp_path / 'run', FACTS, samples(3), [], {})
+    monkeypatch.setenv('STICKSLIP_DEBUG', debug)
     *method, program = PLACES[place]
     bag = [f'bag:={tmp_path}/run'] if place == 'player' else []
-
-    def errors() -> list[str]:
-        with running(*bag, program=program, folder=tmp_path, prepare=partial(break_method, *method)) as process:
-            code, errors = process.wait()
-        assert code == 1, errors
-        return errors.splitlines()
-
-    monkeypatch.setenv('STICKSLIP_DEBUG', '0')
-    *before, line = errors()
-    assert not any('Traceback' in text for text in before)
-    assert line == f'{program}: internal error: ZeroDivisionError: first (STICKSLIP_DEBUG=1 shows where)'
-    monkeypatch.setenv('STICKSLIP_DEBUG', '1')
-    shown = errors()
-    assert 'Traceback (most recent call last):' in shown
-    assert any(text.endswith('in broken') for text in shown)
-    assert shown[-2:] == ['ZeroDivisionError: first', 'second']
+    with running(*bag, program=program, folder=tmp_path, prepare=partial(break_method, *method)) as process:
+        code, errors = process.wait()
+    *before, line = errors.splitlines()
+    assert code == 1
+    if debug == '0':
+        assert not any('Traceback' in text for text in before)
+        assert line == f'{program}: internal error: ZeroDivisionError: first (STICKSLIP_DEBUG=1 shows where)'
+    else:
+        assert 'Traceback (most recent call last):' in before
+        assert any(text.endswith('in broken') for text in before)
+        assert [before[-1], line] == ['ZeroDivisionError: first', 'second']
 
 
 def with_a_run_that_contradicts_itself() -> None:

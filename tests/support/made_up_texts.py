@@ -1,12 +1,13 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Texts that are nearly scene files, limits files or overrides."""
+"""Texts that are nearly scene files, limits files or overrides; and what a reader says of what is made up."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
+from stickslip_sim.core.errors import LINE_LIMIT, StickslipError
 from stickslip_sim.scene.schema import PARAMETERS
 
 NAMES = st.sampled_from([entry.name for entry in PARAMETERS])
@@ -71,3 +72,14 @@ def _one_more(draw: DrawFn, lines: list[str]) -> None:
 
 
 _CHANGES = [_other_value, _other_value, _other_letter, _without, _twice, _one_more]
+
+
+def accepts_or_refuses(read: Callable[..., object], *arguments: object) -> object:
+    """Return what a reader returns, None when it refused in a line; anything else that it raises is a mistake."""
+    try:
+        return read(*arguments)
+    except StickslipError as error:
+        text = str(error)
+        assert 0 < len(text) <= LINE_LIMIT + 1, text
+        assert '\n' not in text, text
+        return None

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -21,9 +21,12 @@ with warnings.catch_warnings():   # rclpy loads it at the first message, and it 
 
 from diagnostic_msgs.msg import DiagnosticArray  # noqa: E402
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParametersAtomically  # noqa: E402
+from rclpy.callback_groups import CallbackGroup  # noqa: E402
 from rclpy.context import Context  # noqa: E402
+from rclpy.event_handler import QoSSubscriptionEventType, SubscriptionEventCallbacks  # noqa: E402
 from rclpy.exceptions import InvalidHandle  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+from rclpy.impl.implementation_singleton import rclpy_implementation  # noqa: E402
 from rclpy.node import Node  # noqa: E402
 from rclpy.parameter import Parameter  # noqa: E402
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy  # noqa: E402
@@ -39,8 +42,7 @@ from stickslip_msgs.msg import (  # noqa: E402
     StepTiming,
 )
 from stickslip_msgs.srv import Step  # noqa: E402
-from tests.support.node_processes import NodeProcess, assert_clean, running  # noqa: E402
-from tests.support.topic_ears import Ears  # noqa: E402
+from tests.support.node_processes import NodeProcess, assert_clean, attentive, running  # noqa: E402
 from tests.support.waiting import DEADLINE, first_of, wait_for  # noqa: E402
 
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -55,6 +57,74 @@ _HEARD = {
 def nanoseconds(time: Any) -> int:
     """Return a time of ROS as a number."""
     return int(time.sec) * 1_000_000_000 + int(time.nanosec)
+
+
+# What a client hears is taken from the middleware in bulk: an executor waits anew for each message, in half a
+# millisecond of CPU, and an axis sends four thousand of them a second.
+
+_PAUSE = 0.01    # s between two looks, for the sake of the CPU alone: what comes meanwhile waits in the middleware
+
+
+class _Hidden(CallbackGroup):  # type: ignore[misc]
+    """Hides subscriptions from executors."""
+
+    def can_execute(self, entity: object) -> bool:
+        return False
+
+
+class _Heard(NamedTuple):
+    """A subscription, the event that counts its lost messages, and who wants to know that number."""
+
+    subscription: Any
+    losses: Any
+    lose: Callable[[int], None]
+
+
+class Ears:
+    """Takes the messages of topics as they come, in a thread."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._heard: list[_Heard] = []
+        self._is_closing = threading.Event()
+        self._thread = threading.Thread(target=self._listen, daemon=True)
+        self._thread.start()
+
+    def hear(self, kind: Any, name: str, take: Callable[[Any], object], qos: QoSProfile, raw: bool,
+             lose: Callable[[int], None]) -> None:
+        """Let `take` have the messages of a topic, and `lose` how many of them DDS reports as lost."""
+        subscription = self._node.create_subscription(
+            kind, name, take, qos, raw=raw, callback_group=_Hidden(),
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False))
+        with subscription.handle:
+            losses = rclpy_implementation.EventHandle(
+                subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST)
+        self._heard.append(_Heard(subscription, losses, lose))
+
+    def close(self) -> None:
+        self._is_closing.set()
+        self._thread.join(DEADLINE)
+        for heard in self._heard:
+            heard.losses.destroy_when_not_in_use()    # it would keep the subscription
+
+    def _listen(self) -> None:
+        while not self._is_closing.wait(_PAUSE):
+            for heard in tuple(self._heard):
+                _take_messages(heard.subscription)
+                _take_losses(heard)
+
+
+def _take_messages(subscription: Any) -> None:
+    with subscription.handle:
+        while (taken := subscription.handle.take_message(subscription.msg_type, subscription.raw)) is not None:
+            subscription.callback(taken[0])
+
+
+def _take_losses(heard: _Heard) -> None:
+    with heard.losses:
+        report = heard.losses.take_event()
+    if report is not None:
+        heard.lose(report.total_count_change)
 
 
 class Asker:
@@ -284,10 +354,11 @@ def bare_nodes(*names: str, kind: Any = Node) -> Iterator[list[Any]]:
 
 
 @contextmanager
-def live_axis(*words: str, namespace: str = '/', **options: Any) -> Iterator[tuple[NodeProcess, Client]]:
-    """Run a node beside a client that it knows; it ends clean, unless the caller has waited for its end."""
+def live_axis(*words: str, namespace: str = '/', prepare: Callable[[], None] = attentive, **options: Any
+              ) -> Iterator[tuple[NodeProcess, Client]]:
+    """Run an attentive node beside a client that it knows; it ends clean, unless the caller has waited for its end."""
     where = [] if namespace == '/' else ['-r', f'__ns:={namespace}']
-    with running(*words, *where, **options) as process, client(namespace) as axis:
+    with running(*words, *where, prepare=prepare, **options) as process, client(namespace) as axis:
         axis.connect(is_moving='time.mode:=lockstep' not in words)
         yield process, axis
         if process.code is None:

@@ -25,7 +25,7 @@ from stickslip_sim.recording.messages import header
 from stickslip_sim.ros.node.endpoints import command_reader, message_of, message_type, publisher
 from stickslip_sim.ros.node.joints import JointNames, JointStatePacker, commanded_velocity, disregarded
 from stickslip_sim.simulation import Measured
-from tests.support.refusals import accepts_or_refuses
+from tests.support.made_up_texts import accepts_or_refuses
 from tests.support.ros_nodes import Client, live_axis
 from tests.support.waiting import wait_for
 

@@ -23,9 +23,10 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.recording import open_bag
 from stickslip_sim.ros.node.endpoints import publisher
 from stickslip_sim.simulation import RigEventKind
-from tests.support.node_processes import assert_clean, attentive, recording_into
+from tests.support.node_processes import assert_clean, recording_into
 from tests.support.rigs import assert_same_states, made_again, rig_events_in
 from tests.support.ros_nodes import Client, bare_nodes, live_axis
+from tests.support.tool import restore_interrupt
 from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -69,7 +70,7 @@ def memory_of(pid: int) -> float:
 
 
 def test_a_flood_of_commands_is_counted_reported_once_a_second_and_costs_no_memory(nodes: list[Any]) -> None:
-    with live_axis('drive.velocity:=0.001') as (process, axis):
+    with live_axis('drive.velocity:=0.001', prepare=restore_interrupt) as (process, axis):
         begin = time.monotonic()
         with Controller(nodes[0], 2000.0, math.nan) as of_none:
             timing = axis.next('timing', lambda timing: timing.total_refused > 2000)
@@ -161,7 +162,7 @@ class TestRefusals:
 
     def test_each_kind_is_reported_with_its_own_reason_once_until_a_reset(self, tmp_path: Path) -> None:
         """A velocity that is refused now is not reported with the reason of a force that was refused long ago."""
-        with live_axis('time.rate:=200.0', *recording_into(tmp_path / 'run'), prepare=attentive) as (process, axis):
+        with live_axis('time.rate:=200.0', *recording_into(tmp_path / 'run')) as (process, axis):
             refusals = Refusals(axis)
             axis.send_force(math.nan)
             assert refusals.named(self.FORCE) == ('force', 1)
@@ -183,7 +184,7 @@ class TestRefusals:
         """They are good commands, refused by the drive: until the fault is cleared."""
         wanted = ('time.rate:=200.0', 'command.timeout:=0.5', 'command.on_timeout:=fault',
                   'command.timeout_deceleration:=1.0')
-        with live_axis(*wanted, *recording_into(tmp_path / 'run'), prepare=attentive) as (_, axis):
+        with live_axis(*wanted, *recording_into(tmp_path / 'run')) as (_, axis):
             refusals = Refusals(axis)
             axis.send_velocity(0.004)
             axis.next('slider_state', runs_at(0.004))
@@ -199,8 +200,8 @@ class TestRefusals:
 
 def test_each_part_of_a_step_is_found(tmp_path: Path) -> None:
     path = tmp_path / 'budget.json'
-    subprocess.run([sys.executable, '-m', 'benchmarks.budget', '--seconds', '0.3', '--out', str(path)], check=True,
-                   timeout=DEADLINE)
+    subprocess.run([sys.executable, '-m', 'benchmarks.budget', '--rate', '200', '--seconds', '0.3', '--out', str(path)],
+                   check=True, timeout=DEADLINE)
     found = {row['part']: row['p50'] for row in json.loads(path.read_text())['rows']}
     parts = ('hear', 'take', 'simulate', 'rig events', 'pack', 'publish', 'record', 'statistics')
     assert all(found[part] > 0.0 for part in parts)

@@ -9,7 +9,6 @@ import math
 import statistics
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -248,12 +247,6 @@ class TestMotion:
         timing = axis.next('timing', lambda timing: timing.command_age_p50 > 0.0)
         assert timing.command_age_p50 <= timing.command_age_max
 
-    def test_a_force_moves_the_axis(self, axis: Client) -> None:
-        axis.send_velocity(0.0)
-        axis.send_force(-1500.0)      # beyond 0.24 N
-        axis.next('mode_event', lambda event: event.kind == EventKind.BREAKAWAY and event.direction == -1)
-        axis.send_force(0.0)
-
     def test_bad_commands_are_refused(self, axis: Client) -> None:
         axis.send_velocity(0.004)
         axis.next('slider_state', lambda state: state.drive_velocity == 0.004)
@@ -291,19 +284,6 @@ class TestServices:
         assert nanoseconds(axis.latest('run_info').start_time) > before
         axis.next('slider_state', lambda state: state.step > 20)
         assert {state.drive_velocity for state in axis.states_of_run()} == {0.002}
-
-    def test_record(self, axis: Client, process: NodeProcess) -> None:
-        answer = axis.switch('record', True)
-        assert answer.success, answer.message
-        folder = Path(answer.message.removeprefix('recording into '))
-        wait_for(lambda: axis.latest('run_info').bag_path == str(folder), 'run_info')
-        refused = axis.trigger('reset')
-        assert not refused.success
-        assert 'recording' in refused.message
-        assert not (folder / 'metadata.yaml').read_text().count('message_count: 1')
-        axis.status('recorder', lambda values: int(values['written']) > 500)
-        assert axis.switch('record', False).message == f'recorded into {folder}'
-        assert axis.switch('record', False).message == 'not recording'
 
 
 @contextmanager

@@ -20,7 +20,7 @@ from stickslip_sim.recording import open_bag, open_run, read_run, recordings
 from stickslip_sim.ros.node.publishers import Publishers
 from stickslip_sim.runs.run import LOAD_COLUMN
 from tests.support.axis_here import axis_here
-from tests.support.node_processes import attentive, recording_into, running, with_small_files
+from tests.support.node_processes import recording_into, running, with_small_files
 from tests.support.ros_nodes import client, live_axis
 from tests.support.tool import restore_interrupt
 from tests.support.waiting import wait_for
@@ -53,7 +53,7 @@ class TestPlace:
         runs = tmp_path / 'runs'
         (runs / 'mine').mkdir(parents=True)
         (runs / 'away').symlink_to(tmp_path, target_is_directory=True)
-        with live_axis(f'record.folder:={runs}/first', folder=tmp_path, prepare=attentive) as (_, axis):
+        with live_axis(f'record.folder:={runs}/first', folder=tmp_path) as (_, axis):
             for place in ('elsewhere', f'{runs}/../up', f'{runs}/away/x', '/dev/shm/x', '~/x'):
                 answer = axis.set_parameters(record__folder=place)
                 assert not answer.successful
@@ -168,10 +168,11 @@ class TestContent:
         with live_axis(f'record.folder:={folder}') as (_, axis):
             axis.send_velocity(0.003)
             axis.next('slider_state', lambda state: state.drive_velocity == 0.003)
-            assert axis.switch('record', True).success
+            assert axis.switch('record', True).message == f'recording into {folder}'
+            wait_for(lambda: axis.latest('run_info').bag_path == str(folder), 'run_info')
             begin = axis.latest('slider_state').step
             axis.next('slider_state', lambda state: state.step > begin + 600)
-            assert axis.switch('record', False).success
+            assert axis.switch('record', False).message == f'recorded into {folder}'
             run = open_bag(folder)
             messages = {message.sequence: message.data for message in run.messages(['/slider_state'])}
             axis.next('slider_state', lambda state: state.step > max(messages), begin=0)

@@ -16,7 +16,7 @@ from stickslip_msgs.msg import RigEvent
 from stickslip_msgs.srv import InjectFault
 from stickslip_sim.recording import open_bag
 from stickslip_sim.scene.load import NODE
-from tests.support.node_processes import attentive, recording_into
+from tests.support.node_processes import recording_into
 from tests.support.ros2_control_client import (
     SHIPPED,
     THRESHOLD,
@@ -149,7 +149,7 @@ class TestCommands:
         messages = [JointState(name=['spindle'], velocity=[0.001]), JointState(),
                     JointState(name=['axis_drive'], position=[0.1]),
                     JointState(name=['axis_slider', 'axis_drive'], velocity=[math.nan])]
-        with live_axis(*ON, prepare=attentive) as (process, axis):
+        with live_axis(*ON) as (process, axis):
             out = axis.node.create_publisher(JointState, 'joint_commands', 1)
             good = JointState(name=['axis_drive'], velocity=[0.004], position=[1.0])
             wait_for(lambda: out.publish(good) or axis.latest('slider_state').drive_velocity == 0.004, 'the node')
@@ -165,7 +165,7 @@ class TestCommands:
 
 class TestSilence:
     def test_a_command_near_the_state_is_not_sent_and_the_time_out_says_why(self) -> None:
-        with live_axis(*ON, 'time.rate:=200.0', 'command.timeout:=0.3', prepare=attentive) as (process, axis):
+        with live_axis(*ON, 'time.rate:=200.0', 'command.timeout:=0.3') as (process, axis):
             notes: list[RigEvent] = []
             axis.node.create_subscription(RigEvent, 'rig_event', notes.append, 10)
             axis.greet()

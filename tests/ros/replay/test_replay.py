@@ -12,7 +12,6 @@ from typing import Any
 
 import pytest
 from mcap.writer import Writer
-from rcl_interfaces.srv import DescribeParameters
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool, Trigger
@@ -22,7 +21,6 @@ from stickslip_sim.bags.topics import CLOCK, PARAMETER_EVENTS, RECORDED, SLIDER_
 from stickslip_sim.core.errors import RecordingWarning
 from stickslip_sim.recording import open_bag, open_run, schema, write_bag
 from stickslip_sim.ros.node.endpoints import message_type, qos
-from stickslip_sim.ros.replay.span import REPLAY_PARAMETERS
 from tests.support.busy_machine import judged_by_time
 from tests.support.node_processes import NodeProcess, assert_clean, ended_at_once, refusal_of, running
 from tests.support.recorded_runs import FACTS, damage, events, samples
@@ -268,16 +266,6 @@ class TestProcess:
         code, errors = ended_at_once('replay_node', f'bag:={bag}', 'mode:=commands', 'axis:=replay')
         assert (code, 'Traceback' in errors) == (2, False)
         assert "replay_node: axis = 'replay' is refused: must be a sim_node; this node has no time.mode" in errors
-
-    def test_parameters_are_described(self, bag: Path) -> None:
-        with client() as viewer, replaying(bag, *PAUSED) as process:
-            names = [entry.name for entry in REPLAY_PARAMETERS]
-            described = viewer.call(DescribeParameters, 'describe_parameters', 'replay', names=names).descriptors
-            for entry, one in zip(REPLAY_PARAMETERS, described, strict=True):
-                assert one.name == entry.name
-                assert entry.description in one.description
-                assert one.read_only is not entry.live
-            assert_clean(*process.end())
 
 
 def another(path: Path, type_name: str, type_hash: str, topic: str = '/slider_state') -> Path:

@@ -22,8 +22,8 @@ from stickslip_sim.recording.reader import Recording
 from stickslip_sim.ros.replay.orders import Request, is_timeout, request_of
 from stickslip_sim.ros.replay.player import Act, Player, Timeline
 from stickslip_sim.simulation import RigEventKind
+from tests.support.made_up_texts import accepts_or_refuses
 from tests.support.recorded_runs import FACTS, damage, events, samples
-from tests.support.refusals import accepts_or_refuses
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.filterwarnings("ignore:module 'sre_:DeprecationWarning")
