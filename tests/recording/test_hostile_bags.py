@@ -7,6 +7,7 @@ import tracemalloc
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from random import Random
 
@@ -175,6 +176,7 @@ def defined(definition: str) -> list[Record]:
             Record(Opcode.MESSAGE, MESSAGE + b'\0\1\0\0' + bytes(8))]
 
 
+@cache
 def bomb(compression: str) -> bytes:
     """Return a GiB of zeros, compressed."""
     zeros = bytes(1 << 24)

@@ -57,24 +57,6 @@ def test_a_slip_under_jumps_is_the_closed_form(solver: Solver, error: float) -> 
     assert stop.time == pytest.approx(0.3 + 0.7 / 4.0, abs=error)
 
 
-def test_a_slip_on_a_spring_swings_about_a_centre_that_jumps() -> None:
-    """With c = m ω² and constant mu_k each piece is a swing about x = −mu_k N/c, joined where N jumps."""
-    omega = 5.0
-    load = steps('normal_load', (0.0, 0.11), (0.0, -10.0))
-    sim = simulator(coulomb(stiffness=2.0 * omega ** 2), load, initial=InitialState(velocity=1.0))
-    (stop,) = [event for event in sim.advance(instant(1.0)) if event.kind in (EventKind.STICK, EventKind.REVERSE)][:1]
-    x, u = 0.0, 1.0
-    length = 0.0
-    for normal, longest in ((16.0, 0.11), (6.0, math.inf)):
-        centre = -0.25 * normal / 50.0
-        swing, phase = math.hypot(x - centre, u / omega), math.atan2(u, omega * (x - centre))
-        length = min(longest, phase / omega)    # then the velocity is 0
-        x, u = centre + swing * math.cos(phase - omega * length), swing * omega * math.sin(phase - omega * length)
-    assert stop.time == pytest.approx(0.11 + length, rel=1e-14)
-    assert stop.position == pytest.approx(x, rel=1e-14)
-    assert abs(u) < 1e-15
-
-
 @pytest.mark.parametrize(('contact', 'branches'), [(RIGID, True), (COMPLIANT, False)])
 @pytest.mark.parametrize('load', LOADS)
 def test_events_are_those_of_the_reference(load: str, contact: Contact, branches: bool) -> None:
@@ -172,15 +154,6 @@ def test_a_contact_keeps_its_deflection_and_lets_go_below_its_force() -> None:
     assert breakaway.time == 2.0
     assert breakaway.friction_force == pytest.approx((NORMAL - 2800.0) * 0.24, rel=1e-14)
     assert breakaway.position == pytest.approx(before[1].position, rel=1e-12)
-
-
-def test_without_a_normal_force_the_slider_is_free() -> None:
-    load = steps('normal_load', (0.0, 1.0), (0.0, -16.0))
-    sim = simulator(coulomb(), load, constant(4.0))    # held by 0.3 · 16 N
-    (breakaway,) = sim.advance(instant(2.0))
-    assert (breakaway.kind, breakaway.time, breakaway.friction_force) == (EventKind.BREAKAWAY, 1.0, 0.0)
-    assert sim.sample().velocity == pytest.approx(2.0, rel=1e-15)
-    assert sim.sample().position == pytest.approx(1.0, rel=1e-15)
 
 
 def test_a_force_and_its_limit_that_rise_together_break_nothing_away() -> None:
