@@ -59,7 +59,7 @@ def test_the_draws_are_those_of_whole_numbers(seed: int) -> None:
 
 
 def test_the_factors_are_normal_and_independent() -> None:
-    count = 20_000
+    count = 5_000
     for deviation in (0.05, 0.5):
         bound = 1.0 / deviation
         law = stats.truncnorm(-bound, bound, loc=1.0, scale=deviation)

@@ -267,8 +267,9 @@ def break_away(law: StaticLaw, rest: float, speed: float, rate: float, push: flo
     return mp.findroot(beyond, (before, before + step), solver='anderson', tol=1e-80, maxsteps=200)
 
 
-@pytest.mark.parametrize(('speed', 'rate', 'push'), [(0.002, 0.0, 0.0), (0.0, 0.003, 0.0), (0.0005, 0.001, 120.0)])
-@pytest.mark.parametrize('rest', [0.0, 0.05, 3.0, math.inf])
+@pytest.mark.parametrize(('rest', 'speed', 'rate', 'push'), [
+    (0.0, 0.002, 0.0, 0.0), (0.0, 0.0, 0.003, 0.0), (0.05, 0.0005, 0.001, 120.0), (3.0, 0.0, 0.003, 0.0),
+    (math.inf, 0.002, 0.0, 0.0)])
 @pytest.mark.parametrize('law', LAWS)
 def test_break_away_from_a_rigid_contact(law: StaticLaw, rest: float, speed: float, rate: float, push: float) -> None:
     if math.isinf(rest) and not law.bounded:

@@ -30,9 +30,6 @@ from tests.support.stored_runs import FILE
 
 from .scenes import Scene, named_scenes, random_scenes, shipped_scenes
 
-SEED = 2026
-RANDOM_SCENES = 56
-FEWEST, MOST = 5, 40
 DIGITS = 25
 MORE_DIGITS = 32  # of the paper's and the benchmark's runs
 SAMPLES = 12
@@ -49,18 +46,14 @@ NUMBERS = (
 
 
 def chosen_scenes() -> list[Scene]:
-    """Return the named and the shipped scenes, and the random ones from which the stored ones are taken."""
-    return named_scenes() + shipped_scenes() + random_scenes(RANDOM_SCENES, SEED)
+    """Return the named, the shipped and the random scenes."""
+    return named_scenes() + shipped_scenes() + random_scenes()
 
 
 def record(scene: Scene) -> dict[str, Any] | None:
-    """Simulate a scene (random ones up to MOST events) and return what is stored; None if unsuitable."""
+    """Simulate a scene and return what is stored; None if unsuitable."""
     run = exact_run(scene.parameters, scene.duration)
-    if scene.name.startswith('random') and len(run) > MOST:
-        end = float((run[MOST - 1].time + run[MOST].time) / 2)
-        scene = scene._replace(duration=float(f'{end:.6g}'))
-        run = exact_run(scene.parameters, scene.duration)
-    if run.disputed or (scene.name.startswith('random') and len(run) < FEWEST):
+    if run.disputed:
         return None
     sensitivity = _sensitivity(scene, run)
     if sensitivity is None:

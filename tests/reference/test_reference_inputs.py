@@ -5,12 +5,9 @@
 import math
 import random
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
-import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
 from stickslip_sim.core.errors import InputError, StickslipError
@@ -30,8 +27,6 @@ from tests.reference.scenes import Parameters, paper  # noqa: E402
 from tests.support.stored_objects import exact_run  # noqa: E402
 
 NEVER = math.inf
-FEED = InputProfile((0.0,), (0.002,), (0.0,), NEVER, (Sinusoid(0.01, 3.0, 0.3),))
-SHAKE = InputProfile((0.0,), (0.0,), (0.0,), NEVER, (Sinusoid(100.0, 20.0, 0.0), Sinusoid(30.0, 7.0, 1.0)))
 
 
 def coulomb_axis(kinetic: KineticTable, stiffness: float, damping: float) -> Axis:
@@ -80,52 +75,6 @@ def sliding(stiffness: float, damping: float, sinusoid: Sinusoid, t: mpf) -> mpf
     nu = mpmath.sqrt(c / m - g * g)
     swing = (mpmath.sin(nu * t) / nu).real if nu else t
     return now + (mpmath.exp(-g * t) * (a * mpmath.cos(nu * t) + (b + g * a) * swing)).real
-
-
-@pytest.mark.parametrize('axis', [paper_axis(RIGID), paper_axis(COMPLIANT), paper_axis(COMPLIANT, branches=False)])
-def test_every_mode_under_sines_is_what_dop853_integrates(axis: Axis) -> None:
-    run = simulate(axis, InitialState(), FEED, SHAKE, 1.2)
-    coasts = {Mode.COASTING} if axis.friction.excess else set()
-    assert {event.mode for event in run.events} == {Mode.STICK, Mode.ACCELERATING, Mode.DECELERATING} | coasts
-    for before, after in pairwise(run.events):
-        end = integrate(axis, before, after.time, run.events)
-        assert end == pytest.approx([after.position, after.velocity, after.drive_position], rel=1e-10, abs=1e-12)
-
-
-def integrate(axis: Axis, event: Any, until: float, events: list[Any]) -> list[float]:
-    """Integrate m ẍ = F_d + F_e − F in the mode that an event begins, at 1e-13."""
-    contact = axis.contact
-    start = last_break(event, events)
-    excess = 0.0
-    if axis.friction.excess and start:
-        psi = axis.friction.excess.fraction(abs(start.velocity))
-        excess = (start.static_coefficient - axis.friction.kinetic.coefficient(abs(start.velocity))) / psi
-    held = event.friction_force if event.mode == Mode.STICK else 0.0
-
-    def motion(t: float, y: np.ndarray[Any, Any]) -> list[float]:
-        x, u, s = y
-        v = FEED.value_at(t)
-        pull = axis.drive_stiffness * (s - x) + axis.drive_damping * (v - u) + SHAKE.value_at(t)
-        if event.mode == Mode.COASTING or (event.mode == Mode.STICK and isinstance(contact, RigidContact)):
-            return [u, 0.0, v]
-        if event.mode == Mode.STICK and not isinstance(contact, RigidContact):
-            friction = held + contact.stiffness * (x - event.position) + contact.damping * u
-        else:
-            speed = abs(u)
-            friction = axis.friction.kinetic.coefficient(speed)
-            if event.mode == Mode.ACCELERATING and axis.friction.excess:
-                friction += excess * axis.friction.excess.fraction(speed)
-            friction *= event.direction * axis.normal_force
-        return [u, (pull - friction) / axis.mass, v]
-
-    state = [event.position, event.velocity, event.drive_position]
-    done = solve_ivp(motion, (event.time, until), state, method='DOP853', rtol=1e-13, atol=1e-14)
-    return [float(x) for x in done.y[:, -1]]
-
-
-def last_break(event: Any, events: list[Any]) -> Any:
-    starts = [e for e in events if e.kind in (EventKind.BREAKAWAY, EventKind.REVERSE) and e.time <= event.time]
-    return starts[-1] if starts else None
 
 
 def shaken(contact: str, **changes: Any) -> Parameters:

@@ -124,7 +124,7 @@ def test_the_rule_of_a_contact_that_yields_holds_all_along(damping: float, load:
 
 def held(axis: Axis, load: InputProfile, run: ReferenceRun, k: int) -> None:
     event, until = run.events[k], run.events[k + 1].time
-    steps_of_time = [event.time + (until - event.time) * share for share in np.linspace(0.001, 0.999, 40)]
+    steps_of_time = [event.time + (until - event.time) * share for share in np.linspace(0.001, 0.999, 12)]
     for here in run.exact.state_at(steps_of_time):
         t = float(here.time)
         normal = axis.normal_force + load.value_at(t)

@@ -13,7 +13,7 @@ from stickslip_sim.axis import InitialState
 from stickslip_sim.core.errors import SolverError
 from stickslip_sim.core.input_profile import InputProfile, ramp, steps
 from stickslip_sim.core.types import Event, EventKind, Instant, Mode
-from tests.support.axes import COMPLIANT, RIGID, Contact, instant, make, of_kind, paper_axis, run_events
+from tests.support.axes import COMPLIANT, RIGID, instant, make, of_kind, paper_axis, run_events
 
 
 def test_smooth_sliding_ends_in_steady_coasting() -> None:
@@ -130,66 +130,3 @@ def test_changing_to_the_same_axis_changes_no_force() -> None:
     before = simulator.sample().friction_force
     simulator.change_axis(axis)
     assert simulator.sample().friction_force == pytest.approx(before, rel=1e-14)
-
-
-# The exact engine against the check values of the model, and against a classical cycle in closed form.
-
-# model.md: kind, t / s, x / m, ẋ / (m/s), F_d / N, from 40-digit arithmetic
-RIGID_EVENTS = [
-    (EventKind.BREAKAWAY, 0.67979883333333, 0.0, 0.0, 823.7586),
-    (EventKind.COAST, 0.76770114503556598, 5.3092642091498e-4, 1.45614975366e-2, 552.439531347),
-    (EventKind.DECELERATE, 0.79961346115854196, 9.9561753352655e-4, 1.45614975366e-2, 311.919643128),
-    (EventKind.STICK, 0.83862368925988008, 1.3615322557025e-3, 0.0, 197.42907369),
-    (EventKind.BREAKAWAY, 1.3313467055455221, 1.3615322557025e-3, 0.0, 788.696693233),
-    (EventKind.COAST, 1.4173257894649382, 1.8213175147126e-3, 1.26694996285e-2, 565.322440017),
-]
-COMPLIANT_EVENTS = [
-    (EventKind.BREAKAWAY, 0.76256755048235998, 1.6410886285782e-4, 2.14285714061e-4, 823.758600008),
-    (EventKind.COAST, 0.850707630222697, 6.6535579038665e-4, 1.34355898952e-2, 575.893322454),
-    (EventKind.DECELERATE, 0.88805371587200703, 1.1671224813629e-3, 1.34355898952e-2, 319.648610648),
-    (EventKind.STICK, 0.92738519742899923, 1.5072615660044e-3, 0.0, 216.505297312),
-    (EventKind.BREAKAWAY, 1.4463032091159095, 1.5828430395267e-3, 2.14282328562e-4, 793.000897909),
-    (EventKind.ACCELERATE, 1.4463032134383819, 1.582843040453e-3, 2.14282328562e-4, 793.00090254),
-]
-CONVENTIONAL_EVENTS = [
-    (EventKind.BREAKAWAY, 0.67979883333333, 0.0, 0.0, 823.7586),
-    (EventKind.KNOT, 0.7158107683398723, 7.2167822270819e-4, 0.035, None),
-    (EventKind.DECELERATE, None, None, None, None),
-    (EventKind.KNOT, 0.72765171843402951, None, 0.035, None),
-    (EventKind.STICK, 0.75893741627714234, 1.801901429588e-3, 0.0, -162.41595822),
-    (EventKind.BREAKAWAY, 1.5749466192221413, 1.801901429588e-3, 0.0, None),
-]
-
-
-@pytest.mark.parametrize(('contact', 'branches', 'expected'), [
-    (RIGID, True, RIGID_EVENTS), (COMPLIANT, True, COMPLIANT_EVENTS), (RIGID, False, CONVENTIONAL_EVENTS)])
-def test_check_values_of_the_model(contact: Contact, branches: bool, expected: list[tuple[object, ...]]) -> None:
-    events = run_events(paper_axis(contact, branches=branches), 0.002, 1.6)
-    assert [e.kind for e in events[:len(expected)]] == [row[0] for row in expected]
-    for event, (_, *values) in zip(events, expected):
-        got = (event.time, event.position, event.velocity, event.drive_force)
-        for value, want, last_digit in zip(got, values, (2e-14, 1e-16, 1e-13, 1e-9)):
-            if want is not None:
-                assert value == pytest.approx(want, rel=1e-11 if last_digit == 1e-9 else 0.0, abs=last_digit), event
-
-
-@pytest.mark.parametrize(('contact', 'period', 'jump', 'peak', 'break_force', 'stick_force'), [
-    (RIGID, 0.619075168, 1.238150336e-3, 1.23285921663e-2, 781.443710909, 235.301790949),
-    (COMPLIANT, 0.659065697, 1.31813139e-3, 1.16642823367e-2, 788.081203029, 246.606758267)])
-def test_limit_cycle_of_the_model(contact: Contact, period: float, jump: float, peak: float, break_force: float,
-                                  stick_force: float) -> None:
-    events = run_events(paper_axis(contact), 0.002, 60.0)
-    first, second = of_kind(events, EventKind.BREAKAWAY)[-2:]
-    assert second.time - first.time == pytest.approx(period, abs=6e-10)
-    assert second.position - first.position == pytest.approx(jump, abs=6e-12)
-    assert second.drive_force == pytest.approx(break_force, abs=6e-10)
-    assert of_kind(events, EventKind.COAST)[-1].velocity == pytest.approx(peak, abs=6e-14)
-    assert of_kind(events, EventKind.STICK)[-1].drive_force == pytest.approx(stick_force, abs=6e-10)
-
-
-def test_second_static_coefficients_of_the_model() -> None:
-    for contact, branches, value, digit in ((RIGID, True, 0.2297848, 1e-7), (COMPLIANT, True, 0.23103882, 1e-8),
-                                            (RIGID, False, 0.2379712, 1e-7)):
-        events = run_events(paper_axis(contact, branches=branches), 0.002, 1.6)
-        assert of_kind(events, EventKind.BREAKAWAY)[1].static_coefficient == pytest.approx(value, abs=0.5 * digit)
-
