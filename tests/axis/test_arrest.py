@@ -4,6 +4,7 @@
 
 import math
 from dataclasses import replace
+from functools import partial
 
 import pytest
 
@@ -23,21 +24,27 @@ from stickslip_sim.axis.forces import applied_force, contact_force
 from stickslip_sim.axis.layout import Parameters
 from stickslip_sim.axis.mode_entry import choose_slip
 from stickslip_sim.axis.motion import begin_motion, move_start
-from stickslip_sim.axis.rows import EventRow, Events
 from stickslip_sim.axis.state_record import State
-from stickslip_sim.axis.transitions import apply_inputs, arrest, release, turn
+from stickslip_sim.axis.transitions import arrest, release, turn
 from stickslip_sim.friction import KineticTable
 from tests.support.axes import Contact
-from tests.support.plain_axes import BACKWARD, COMPLIANT, CONVENTIONAL, FRICTION, SIDED, STATIC, parameters, slip, state
+from tests.support.plain_axes import (
+    BACKWARD,
+    COMPLIANT,
+    CONVENTIONAL,
+    FRICTION,
+    SIDED,
+    STATIC,
+    applied,
+    ended,
+    parameters,
+    slip,
+    state,
+)
 
 both_ways = pytest.mark.parametrize('direction', [1.0, -1.0])
 HIGHER = replace(FRICTION, static=replace(STATIC, initial=0.375))      # above mu_k(0) = 0.25
-
-
-def arrested(p: Parameters, s: State) -> EventRow:
-    events = Events(1)
-    arrest(p, s, events, 0)
-    return events.rows[0]
+arrested, released = partial(ended, arrest), partial(ended, release)
 
 
 @both_ways
@@ -125,7 +132,7 @@ def test_a_free_swing_dies_out_in_the_rounding_of_its_largest_force(contact: Con
         assert turned is not rests
         assert (row.kind == ARREST or not rests, s.swing) == (True, 8.0)
         if rests:   # and stays so under inputs that are no others
-            assert (s.mode, apply_inputs(p, s, Events(1), 0), s.acceleration) == (STICK, False, 0.0)
+            assert (s.mode, applied(p, s), s.acceleration) == (STICK, None, 0.0)
 
 
 @pytest.mark.parametrize('contact', [RigidContact(), COMPLIANT, replace(COMPLIANT, ends_by_drive=True)])
@@ -142,12 +149,6 @@ def test_what_rounding_left_of_the_speed_is_gone() -> None:
 
 
 # How stick ends: exactly at |F| = N mu_s(t⁻), in the direction of F; docs/model.md, "Rules at the edges".
-
-def released(p: Parameters, s: State) -> EventRow:
-    events = Events(1)
-    release(p, s, events, 0)
-    return events.rows[0]
-
 
 @both_ways
 @pytest.mark.parametrize(('rest', 'static'), [(math.inf, 0.5), (2.0, 0.5 - 0.25 / math.e), (0.0, 0.25)])
@@ -259,13 +260,6 @@ def test_a_moving_contact_without_a_force_goes_on_as_it_moves(direction: float) 
 UNDAMPED = replace(COMPLIANT, damping=0.0)
 
 
-
-
-def applied(p: Parameters, s: State) -> EventRow | None:
-    events = Events(1)
-    return events.rows[0] if apply_inputs(p, s, events, 0) else None
-
-
 def yielding(p: Parameters, direction: float, **numbers: float) -> State:
     return state(mode=YIELDING, direction=direction, **numbers)
 
@@ -331,9 +325,7 @@ def test_it_ends_in_stick_with_the_motion_as_it_is(direction: float) -> None:
     p = parameters(contact=COMPLIANT)
     deflection = direction * (16.0 + 64.0 * 0.125) / 4096.0
     s = yielding(p, direction, velocity=-direction * 0.125, deflection=deflection)
-    events = Events(1)
-    arrest(p, s, events, 0)
-    row = events.rows[0]
+    row = arrested(p, s)
     assert (row.kind, row.mode, row.direction, row.friction, row.static) == (ARREST, STICK, direction,
                                                                              direction * 16.0, 0.25)
     assert (s.mode, s.direction, s.rest, s.velocity, s.deflection) == (STICK, 0.0, 0.0, -direction * 0.125, deflection)
@@ -424,6 +416,5 @@ def test_a_feed_under_a_falling_normal_force_is_no_steady_sliding() -> None:
     for n_rate, mode in ((0.0, 'coasts'), (-16.0, 'goes on')):
         p = parameters(friction=CONVENTIONAL)
         s = slip(p, DECELERATING, 0.125, v=0.125, n_rate=n_rate, push=12.0)
-        events = Events(1)
-        turn(p, s, events, 0)
+        ended(turn, p, s)
         assert (s.mode == ACCELERATING) is (mode == 'goes on')

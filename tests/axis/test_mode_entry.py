@@ -11,9 +11,9 @@ import pytest
 from stickslip_sim.axis.codes import ACCELERATE, ACCELERATING, COAST, COASTING, DECELERATE, DECELERATING, KNOT, STICK
 from stickslip_sim.axis.forces import breakpoint_speed
 from stickslip_sim.axis.mode_entry import break_away, choose_slip, enter_branch, rest
-from stickslip_sim.axis.rows import EventRow, Events
+from stickslip_sim.axis.rows import EventRow
 from stickslip_sim.axis.transitions import cross_breakpoint, leave_coast, turn
-from tests.support.plain_axes import COMPLIANT, CONVENTIONAL, SIDED, parameters, slip, state
+from tests.support.plain_axes import COMPLIANT, CONVENTIONAL, SIDED, ended, parameters, slip, state
 
 both_ways = pytest.mark.parametrize('direction', [1.0, -1.0])
 BAND = 64.0 * 0.25 * 0.75    # N, at 0.125 m/s and with E = 0.25
@@ -192,9 +192,7 @@ def test_a_slip_coasts_where_its_acceleration_vanishes(mode: float, friction: fl
     p = parameters()
     s = slip(p, mode, 0.125, direction=direction, push=friction, excess=0.25, v=direction * 0.0625,
              acceleration=1e-9, second=4.0, fraction=0.5)
-    events = Events(1)
-    turn(p, s, events, 0)
-    row = events.rows[0]
+    row = ended(turn, p, s)
     assert (row.kind, row.mode, row.direction, row.friction) == (COAST, COASTING, direction, direction * friction)
     assert (row.second, row.fraction, row.velocity, row.static, row.rest) == (4.0, 0.5, direction * 0.125, 0.25, 0.0)
     assert (s.mode, s.residual, s.acceleration, s.velocity) == (COASTING, residual, 0.0, direction * 0.125)
@@ -208,9 +206,8 @@ def test_one_branch_passes_to_the_other_where_both_are_one(mode: float, kind: fl
     """Without an excess there is no band; at a breakpoint the segment is the one it goes into."""
     p = parameters(friction=CONVENTIONAL)
     s = slip(p, mode, 0.25, direction=direction, push=8.0, acceleration=1e-9)
-    events = Events(1)
-    turn(p, s, events, 0)
-    assert (events.rows[0].kind, events.rows[0].mode, events.rows[0].friction) == (kind, follows, direction * 8.0)
+    row = ended(turn, p, s)
+    assert (row.kind, row.mode, row.friction) == (kind, follows, direction * 8.0)
     assert (s.mode, s.acceleration, breakpoint_speed(p, int(s.segment))) == (follows, 0.0, begin)
 
 
@@ -219,9 +216,7 @@ def test_steady_sliding_takes_the_drives_velocity(mode: float) -> None:
     """Sliding at ẋ = v but for rounding is an equilibrium and stays one."""
     p = parameters(friction=CONVENTIONAL)
     s = slip(p, mode, 0.125 * (1.0 - 2.0 ** -52), push=12.0, v=0.125)
-    events = Events(1)
-    turn(p, s, events, 0)
-    assert (events.rows[0].kind, s.mode, s.velocity, s.acceleration) == (COAST, COASTING, 0.125, 0.0)
+    assert (ended(turn, p, s).kind, s.mode, s.velocity, s.acceleration) == (COAST, COASTING, 0.125, 0.0)
 
 
 def test_a_force_that_rises_is_no_steady_sliding() -> None:
@@ -229,7 +224,7 @@ def test_a_force_that_rises_is_no_steady_sliding() -> None:
     p = parameters(friction=CONVENTIONAL)
     for inputs in ({'f_rate': 1.0}, {'v_rate': 1.0}, {'v_rate': 0.03125, 'f_rate': -1.0}):
         s = slip(p, DECELERATING, 0.125, push=12.0, v=0.125, **inputs)
-        turn(p, s, Events(1), 0)
+        ended(turn, p, s)
         assert s.mode == ACCELERATING
 
 
@@ -239,9 +234,7 @@ def test_coasting_ends_upwards_or_downwards(kind: float, mode: float, begin: flo
     """Friction is F_d + F_e up to there, and the acceleration begins with 0."""
     p = parameters()
     s = slip(p, COASTING, 0.25, direction=direction, push=8.0 if mode == DECELERATING else 16.0, excess=0.25)
-    events = Events(1)
-    leave_coast(p, s, events, 0, kind)
-    row = events.rows[0]
+    row = ended(leave_coast, p, s, kind)
     assert (row.kind, row.mode, row.direction) == (kind, mode, direction)
     assert row.friction == direction * (8.0 if mode == DECELERATING else 16.0)
     assert (s.mode, s.acceleration, breakpoint_speed(p, int(s.segment))) == (mode, 0.0, begin)
@@ -256,9 +249,7 @@ def crossed(mode: float, direction: float, acceleration: float, before: float, *
     s.oscillator.gamma = gamma
     s.segment = 0.0 if mode == ACCELERATING else 1.0     # the one that it comes from
     s.velocity *= 1.0 + 2.0 ** -50
-    events = Events(1)
-    cross_breakpoint(p, s, events, 0, before)
-    return events.rows[0], s.velocity, breakpoint_speed(p, int(s.segment)), s.acceleration
+    return ended(cross_breakpoint, p, s, before), s.velocity, breakpoint_speed(p, int(s.segment)), s.acceleration
 
 
 @both_ways
@@ -295,6 +286,5 @@ def test_the_breakpoints_backwards_are_their_own() -> None:
     p = parameters(friction=SIDED)
     s = slip(p, ACCELERATING, 0.0625, direction=-1.0, push=20.0, excess=0.25, acceleration=-6.0)
     s.velocity = -0.125
-    events = Events(1)
-    cross_breakpoint(p, s, events, 0, -6.0)
-    assert (events.rows[0].velocity, events.rows[0].friction, events.rows[0].static) == (-0.125, -2.0, 0.375)
+    row = ended(cross_breakpoint, p, s, -6.0)
+    assert (row.velocity, row.friction, row.static) == (-0.125, -2.0, 0.375)

@@ -26,14 +26,13 @@ from stickslip_sim.axis.codes import (
 from stickslip_sim.axis.forces import kinetic_at_rest, slip_friction
 from stickslip_sim.axis.layout import Parameters
 from stickslip_sim.axis.motion import begin_motion, drive_travel
-from stickslip_sim.axis.rows import EventRow, Events, Sinusoids
+from stickslip_sim.axis.rows import Sinusoids
 from stickslip_sim.axis.sinusoids import load_sinusoids
 from stickslip_sim.axis.slip_series import series_deflection, series_travel
 from stickslip_sim.axis.smooth_load import begin_load, normal_force_at
 from stickslip_sim.axis.state_record import State
-from stickslip_sim.axis.transitions import apply_inputs
 from stickslip_sim.friction import KineticTable
-from tests.support.plain_axes import COMPLIANT, FRICTION, SIDED, STATIC, parameters, slip, state
+from tests.support.plain_axes import COMPLIANT, FRICTION, SIDED, STATIC, applied, parameters, slip, state
 
 mpmath = pytest.importorskip('mpmath')
 mpf = mpmath.mpf
@@ -177,12 +176,6 @@ def test_the_normal_force_is_the_sum_of_its_parts() -> None:
 # An input or a parameter that jumps chooses the mode anew at that instant; docs/model.md, "Rules at the edges".
 
 both_ways = pytest.mark.parametrize('direction', [1.0, -1.0])
-
-
-def applied(p: Parameters, s: State) -> EventRow | None:
-    """Apply the inputs that the state has; return the event if there is one."""
-    events = Events(1)
-    return events.rows[0] if apply_inputs(p, s, events, 0) else None
 
 
 @both_ways

@@ -4,7 +4,7 @@
 
 import math
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import pytest
 
@@ -82,40 +82,21 @@ def test_no_break_away_of_the_trial_is_missed_by_brute_force() -> None:
 
 def test_a_good_run_passes(good: Run) -> None:
     assert len(good.events) > 8
+    assert (Mode.YIELDING in {event.mode for event in good.events}) is (good.parts is YIELDING)
     assert brute.wrong_guards(good) == []
     assert brute.compare(good.parts, good.events) >= len(good.events) - 1
 
 
-def test_a_run_with_a_contact_that_yields_is_among_them() -> None:
-    assert Mode.YIELDING in {event.mode for event in as_run(YIELDING).events}
-
-
-def changed(good: Run, events: list[Event]) -> Run:
-    return good._replace(stretches=[(events, good.stretches[0][1])])
-
-
-def last_of_each_kind(good: Run) -> dict[int, Event]:
-    """Return the last event of each kind and mode by its place: to go from each event to its end is slow."""
-    places = {(event.kind, event.mode): k for k, event in enumerate(good.events)}
-    return {k: good.events[k] for k in places.values()}
-
-
-def test_a_missed_event_is_seen(good: Run) -> None:
-    for k, missed in last_of_each_kind(good).items():
-        events = [event for i, event in enumerate(good.events) if i != k]
-        assert brute.wrong_guards(changed(good, events)), missed
-
-
-def test_an_event_at_another_time_is_seen(good: Run) -> None:
-    for k, event in last_of_each_kind(good).items():
-        events = [*good.events[:k], event._replace(fraction=event.fraction + 1e-10), *good.events[k + 1:]]
-        assert brute.wrong_guards(changed(good, events)), event
-
-
-def test_another_force_is_seen(good: Run) -> None:
-    for k, event in last_of_each_kind(good).items():
-        events = [*good.events[:k], event._replace(drive_force=event.drive_force * (1.0 + 1e-8)), *good.events[k + 1:]]
-        assert brute.wrong_guards(changed(good, events)), event
+@pytest.mark.parametrize('wrong', [
+    lambda _: [], lambda event: [event._replace(fraction=event.fraction + 1e-10)],
+    lambda event: [event._replace(drive_force=event.drive_force * (1.0 + 1e-8))]],
+    ids=['missed', 'at another time', 'with another force'])
+def test_a_wrong_event_is_seen(wrong: Callable[[Event], list[Event]], good: Run) -> None:
+    """The last event of each kind and mode: to go from each event to its end is slow."""
+    end = good.stretches[0][1]
+    for k in {(event.kind, event.mode): k for k, event in enumerate(good.events)}.values():
+        events = [*good.events[:k], *wrong(good.events[k]), *good.events[k + 1:]]
+        assert brute.wrong_guards(good._replace(stretches=[(events, end)])), good.events[k]
 
 
 def test_brute_force_sees_a_missed_break_away(good: Run) -> None:

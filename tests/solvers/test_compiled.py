@@ -31,13 +31,14 @@ for overrides, name in product({[{}, *STEPS, LOAD, SCATTER]!r}, scene_names()):
 '''
 RANDOM = '''
 import random
-from tests.support.axes import make, instant, random_axis
-from tests.support.forced_profiles import random_profiles
+from stickslip_sim.proof.axes import instant, random_parts
+from tests.support.forced_profiles import with_sinusoids
 for seed in range(12):
     rng = random.Random(seed)
-    axis = random_axis(rng)
-    for inputs in ((rng.choice((-1, 1)) * 10 ** rng.uniform(-3, -1.5), 0.0), random_profiles(rng, axis)):
-        simulator = make(axis, *inputs)
+    parts = random_parts(rng, 1.5)
+    pull = 0.2 * parts.axis.normal_force, 10 ** rng.uniform(-1, 2), 1.0
+    for force in (parts.force, with_sinusoids(parts.force, pull)):
+        simulator = parts._replace(force=force).simulator()
         printed([*simulator.advance(instant(1.5)), simulator.sample()])
 '''
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """An axis whose numbers are powers of two, so that its forces are exact, and states of it in plain Python."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -9,7 +10,9 @@ from stickslip_sim.axis import Axis, CompliantContact, Friction, RigidContact, p
 from stickslip_sim.axis.codes import DECELERATING
 from stickslip_sim.axis.forces import segment_above, segment_below
 from stickslip_sim.axis.layout import Parameters
+from stickslip_sim.axis.rows import EventRow, Events
 from stickslip_sim.axis.state_record import State
+from stickslip_sim.axis.transitions import apply_inputs
 from stickslip_sim.friction import ExcessTable, KineticTable, StaticLaw, StaticLawKind
 
 # N mu_k is 16 N at rest, 8 N at 0.25 m/s, 4 N at 0.5 m/s and 8 N at 0.625 m/s; N mu_s rises from 16 N to 32 N.
@@ -55,3 +58,16 @@ def slip(p: Parameters, mode: float, velocity: float, *, direction: float = 1.0,
                        + p.damping * (p.feed_share * made.inputs.v - made.velocity))   # docs/model.md: F_d
     made.inputs.f = made.inputs.base_f = direction * push - pushed_by_drive
     return made
+
+
+def ended(transition: Callable[..., object], p: Parameters, s: State, *more: float) -> EventRow:
+    """Make a transition; return its event."""
+    events = Events(1)
+    transition(p, s, events, 0, *more)
+    return events.rows[0]
+
+
+def applied(p: Parameters, s: State) -> EventRow | None:
+    """Apply the inputs that the state has; return the event if there is one."""
+    events = Events(1)
+    return events.rows[0] if apply_inputs(p, s, events, 0) else None
