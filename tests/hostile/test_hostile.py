@@ -178,14 +178,19 @@ def test_a_good_run_passes_every_judge() -> None:
     assert judge_again(CASE, 'good') == []
 
 
-def test_a_contact_that_holds_little_beside_the_drive_breaks_away_in_time() -> None:
-    # its limit is 2e-9 N, and the drive pulls with 1e10 N; the time is that of the reference
-    values = (draw.axis(0.00022014883903248228, 1721685.3950933928, 26069555372686.043, 9.851792463275056e-08)
-              | draw.contact(0.00028203416586925975, 0.029887747675971698) | draw.static(0.020383594601269636)
-              | draw.kinetic([0.0, 0.03], [0.020383594601269636, 0.02])
-              | draw.constant(-0.0004349433786457962, 36232.958778810345))
-    first = run(Case(values, 4e-17).parts).events[0]
-    assert first.fraction == pytest.approx(1.3046313973565834e-21, rel=1e-14, abs=0.0)
+@pytest.mark.parametrize(('values', 'time'), [
+    (draw.axis(0.00022014883903248228, 1721685.3950933928, 26069555372686.043, 9.851792463275056e-08)
+     | draw.contact(0.00028203416586925975, 0.029887747675971698) | draw.static(0.020383594601269636)
+     | draw.kinetic([0.0, 0.03], [0.020383594601269636, 0.02])
+     | draw.constant(-0.0004349433786457962, 36232.958778810345), 1.3046313973565834e-21),
+    (draw.axis(0.00017559494300188863, 0.0, 1095715766076.7305, 0.016653874911793685)
+     | draw.contact(223496462.78035644) | draw.static(1.035499518042733e-05)
+     | draw.kinetic([0.0], [1.035499518042733e-05]) | draw.constant(-246705.3512867859), 1.0022648210915373e-18)],
+    ids=['2e-9 N beside 1e10 N', '2e-7 N beside 3e17 N'])
+def test_a_contact_that_holds_little_beside_the_drive_breaks_away_in_time(values: Values, time: float) -> None:
+    case = Case(values, 9.518786489179013e-15)
+    assert run(case.parts).events[0].fraction == pytest.approx(time, rel=1e-14, abs=0.0)
+    reference.judge(run(case.parts))
 
 
 def test_the_same_seed_makes_the_same_scenes() -> None:

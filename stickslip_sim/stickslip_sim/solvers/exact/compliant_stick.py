@@ -44,6 +44,7 @@ from .contact_force import (
     gives_way,
     moves,
     rings_within,
+    rounding_so_far,
     second_at_start,
 )
 from .static_guards import GAVE_UP, STEPS, TICK, concave_root, is_concave, law, steep_start
@@ -195,7 +196,10 @@ def _step(p: Parameters, s: State, osc: Oscillator, contact: ContactForce,
         return step, (_GO_ON if step > 0.0 else _IS_ROOT), side
     second_rate = swing + p.normal_force * curvature
     near = safe_step(value, fall, second_rate)
-    if value <= (rounding if side > 0.0 else rounding_back) and fall < 0.0:
+    rounded = rounding if side > 0.0 else rounding_back
+    if p.ends_by_drive == 0.0:
+        rounded = min(rounded, rounding_so_far(p, s, limit, t))
+    if value <= rounded and fall < 0.0:
         return (0.0 if t == 0.0 else min(value / -fall, near)), _IS_ROOT, side
     step = min(near, far)
     if step <= 2.0 * EPSILON * t:

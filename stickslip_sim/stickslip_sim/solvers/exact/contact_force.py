@@ -123,6 +123,14 @@ def contact_rounding(p: Parameters, s: State, motion: ContactMotion, limit: floa
 
 
 @inlined
+def rounding_so_far(p: Parameters, s: State, limit: float, t: float) -> float:
+    """Return the rounding of the contact force and its limit at t from what moves it: early, none of the drive's."""
+    velocity = abs(s.velocity) + (abs(s.acceleration) + (0.5 * abs(s.jerk) + abs(s.snap) * t) * t) * t
+    return 4.0 * EPSILON * (p.contact_stiffness * (abs(s.deflection) + velocity * t) + p.contact_damping * velocity
+                            + p.normal_force * limit)
+
+
+@inlined
 def envelope_room(p: Parameters, rest: float, sag: float, size: float) -> float:
     """Return how far P = `sag` and a free motion of that size keep off the limits of both directions, N."""
     limit = static_limit(p, rest, 1.0)
