@@ -28,7 +28,7 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.report.text import text_lines
 from stickslip_sim.report.values import json_text
 from stickslip_sim.scene import Scene, changed, scene_from_values
-from tests.support.tool import Capture, refused
+from tests.support.tool import Capture
 
 DURATION = 2.0   # s; the second break-away of paper_fig7 comes at 1.33 s
 TWO_SINUSOIDS: dict[str, object] = {'force.amplitudes': [1.0, 1.0], 'force.frequencies': [5.0, 5.0],
@@ -233,21 +233,6 @@ def test_the_tool_prints_overrides_that_give_the_least_scene(tmp_path: Path, cap
     assert written.values['contact.model'] == 'rigid'
     assert written.force.sinusoids == ()
     assert json.loads(out.read_text())['least']['changes']['contact.model'] == 'rigid'
-
-
-@pytest.mark.parametrize(('arguments', 'words'), [
-    (['--tolerance', '0'], ['--tolerance', '> 0 and < 1']),
-    (['--tolerance', '1'], ['--tolerance', '< 1']),
-    (['--tolerance', 'nan'], ['--tolerance']),
-    ([], ['--tolerance']),
-    (['--tolerance', '0.1', '--duration', '-1'], ['duration', '> 0']),
-    (['--tolerance', '0.1', '--duration', '1e5'], ['duration', '<= 3600 s']),
-    (['--tolerance', '0.1', '--set', 'axis.mass=-1'], ['axis.mass']),
-    (['--tolerance', '0.1', '--scene-out', 'least.txt'], ['--scene-out', '.yaml']),
-    (['--tolerance', '0.1', '--out', '/dev/null/a.json'], ['--out', '/dev/null']),
-])
-def test_wrong_use(arguments: list[str], words: list[str], capsys: Capture) -> None:
-    refused(capsys, 'advise', 'paper_fig7', *arguments, words=words)
 
 
 # Which numbers of a scene matter most.

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from scipy.optimize import brentq
 
 from stickslip_sim.bags import topics
@@ -216,61 +217,10 @@ def test_no_column_of_a_recorded_run_is_held_whole(bag: Path, monkeypatch: pytes
 # `stickslip check` on limits and runs that say nothing: one clear line.
 
 class TestRefusals:
-    @pytest.mark.parametrize(('text', 'words'), [
-        ('', ['file', 'limits']),
-        ('[1]', ['file', 'window, target, reference, commands, limits']),
-        ('limits:', ['line 1', 'missing']),
-        ('limits: {}', ['limits', 'at least one limit']),
-        ('limits: 3', ['limits = 3', 'at least one limit']),
-        ('limit: {sticks: {max: 1}}', ['limit', 'did you mean limits?']),
-        ('limits: {stick: {max: 1}}', ["'stick'", 'did you mean sticks?']),
-        ('limits: {mine: {max: 1}}', ["'mine'", 'following_error, end_position_error', 'check: sticks']),
-        ('limits: {mine: {check: stics, max: 1}}', ['mine.check', 'did you mean sticks?']),
-        ('limits: {mine: {check: 3, max: 1}}', ['mine.check = 3', 'one of']),
-        ('limits: {sticks: 3}', ['sticks = 3', '{max: 1.0e-3}']),
-        ('limits: {sticks: {maximum: 3}}', ['sticks.maximum = 3', 'one of check, max, window', 'did you mean max?']),
-        ('limits: {sticks: {}}', ['sticks.max', 'add it']),
-        ('limits: {sticks: {max: 1.5}}', ['sticks.max = 1.5', 'whole number']),
-        ('limits: {sticks: {max: -1}}', ['sticks.max = -1', '>= 0']),
-        ('limits: {sticks: {max: 1, max: 2}}', ['max is given twice']),
-        ('limits: {overshoot: {target: 0.1, max: .nan}}', ['overshoot.max = nan', '>= 0']),
-        ('limits: {overshoot: {target: 0.1, max: .inf}}', ['overshoot.max = inf', '<= 1e+12 m']),
-        ('limits: {overshoot: {target: 0.1, max: "1"}}', ["overshoot.max = '1'", 'without quotes']),
-        ('limits: {overshoot: {target: 0.1, max: 1 mm}}', ["overshoot.max = '1 mm'", 'a number']),
-        ('limits: {overshoot: {target: true, max: 1.0}}', ['overshoot.target = True', 'a number']),
-        ('limits: {overshoot: {max: 1.0}}', ['overshoot.target', 'add it']),
-        ('limits: {settling_time: {target: 0.0, max: 1.0}}', ['settling_time.band', '> 0']),
-        ('limits: {settling_time: {target: 0.0, band: 0.0, max: 1.0}}', ['settling_time.band = 0.0', '> 0']),
-        ('limits: {limit_cycle_amplitude: {cycles: 0, max: 1.0}}', ['cycles = 0', '>= 1']),
-        ('limits: {peak_speed: {target: 0.0, max: 1.0}}', ['peak_speed.target', 'one of check, max, window']),
-        ('limits: {timing: invalid}', ["timing = 'invalid'", 'valid']),
-        ('limits: {timing: {max: 1}}', ['timing', 'valid']),
-        ('limits: {timing: valid}', ['timing', 'the node recorded in real time', 'drop this limit']),
-        ('target: far\n' + LIMITS, ["target = 'far'", 'a number']),
-        ('window: 3\n' + LIMITS, ['window = 3', 'begin, end']),
-        ('window: {start: 3.0}\n' + LIMITS, ['window.start = 3.0', 'begin, end']),
-        ('window: {begin: 0.3, end: 0.3}\n' + LIMITS, ['window = [0.3, 0.3]', 'begin before end']),
-        ('window: {begin: -1.0}\n' + LIMITS, ['window.begin = -1.0', '>= 0']),
-        ('window: {end: 1.5}\n' + LIMITS, ['sticks.window.end = 1.5', '0 to 1.4 s']),
-        ('window: {begin: first_command}\n' + LIMITS, ['sticks.window.begin', 'no command is known']),
-        ('window: {end: first_command}\n' + LIMITS, ['window.end', 'a time in s', '{begin: first_command, end: 2.0}']),
-        ('window: {begin: first_comand}\n' + LIMITS, ['window.begin', 'or as the begin first_command']),
-        ('window: {end: 1.0}\nlimits: {sticks: {max: 1, window: {begin: first_command}}}',
-         ['sticks.window', 'an end of its own']),
-        ('commands: none\n' + LIMITS, ['commands', 'one of required, optional']),
-        ('window: {begin: 0.0001, end: 0.0002}\n' + LIMITS, ['window = [0.0001, 0.0002]', 'one sample']),
-        ('limits: {overshoot: {target: 0.0, max: 1.0}}', ['overshoot.target = 0.0', 'another place', 'begin before']),
-        ('reference: 3\n' + LIMITS, ['reference = 3', 'times, positions']),
-        ('reference: {times: [0.0]}\n' + LIMITS, ['reference.positions', 'add it']),
-        ('reference: {times: [0.0, 1.0], positions: [0.0]}\n' + LIMITS, ['reference.positions = [0.0]', '(2)']),
-        ('reference: {times: [1.0, 1.0], positions: [0.0, 1.0]}\n' + LIMITS, ['reference.times', 'increasing']),
-        ('reference: {times: [], positions: []}\n' + LIMITS, ['reference.times', 'at least one']),
-        ('limits: {"a\\nb": {check: sticks, max: 1}}', ['name', 'printable']),
-        ('limits: {sticks: {max: 1}', ['line 1']),
-        ('limits: &x {sticks: {max: 1}}\nwindow: *x', ['aliases']),
-    ])
-    def test_limits(self, text: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
-        path = limits_file(tmp_path, text)
+    @pytest.mark.parametrize('row', yaml.safe_load(Path(__file__).with_name('refused.yaml').read_text('utf-8')))
+    def test_limits(self, row: list[str], tmp_path: Path, capsys: Capture) -> None:
+        text, *words = row
+        path = limits_file(tmp_path, text.replace('LIMITS', LIMITS))
         refused(capsys, 'paper_fig7', '--duration', DURATION, '--limits', path, '--junit', tmp_path / 'c.xml',
                 words=words)
         assert [file.name for file in tmp_path.iterdir()] == ['limits.yaml']
@@ -282,23 +232,10 @@ class TestRefusals:
         assert 'Is a directory' in refused(capsys, *arguments, tmp_path)
         assert 'No such file' in refused(capsys, *arguments, tmp_path / 'none.yaml')
 
-    @pytest.mark.parametrize(('arguments', 'words'), [
-        (['paper_fig7'], ['--duration S', 'check --help']),
-        (['paper_fig7', '--duration', '0'], ['duration = 0.0', '> 0']),
-        (['paper_fig7', '--duration', '1e9'], ['rows']),
-        (['paper_fig9', '--duration', '1'], ['paper_fig9', 'did you mean']),
-        (['no/such/folder', '--duration', '1'], ['folder', 'no such run']),
-        (['no_such.mcap'], ['no_such.mcap', 'no such run']),
-        (['paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass']),
-        (['paper_fig7', '--duration', '1', '--junit', '/dev/null/c.xml'], ['--junit', '/dev/null']),
-        (['paper_fig7', '--duration', '1', '--junit', '-', '--json', '-'], ['--json', '--junit']),
-        (['BAG', '--duration', '1'], ['--duration and --set', 'recorded']),
-        (['BAG', '--set', 'axis.mass=1.0'], ['--duration and --set', 'recorded']),
-    ])
-    def test_wrong_use(self, arguments: list[str], words: list[str], fig8_bag: Path, tmp_path: Path,
-                       capsys: Capture) -> None:
-        given = [str(fig8_bag) if argument == 'BAG' else argument for argument in arguments]
-        refused(capsys, *given, '--limits', limits_file(tmp_path, LIMITS), words=words)
+    @pytest.mark.parametrize('option', [['--duration', '1'], ['--set', 'axis.mass=1.0']])
+    def test_of_options_for_scenes(self, option: list[str], fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
+        refused(capsys, fig8_bag, *option, '--limits', limits_file(tmp_path, LIMITS),
+                words=('--duration and --set', 'recorded'))
 
     def test_a_bag_without_states(self, tmp_path: Path, capsys: Capture) -> None:
         BagWriter(tmp_path / 'empty', topics.recorded_topics(), {}, {}).close()

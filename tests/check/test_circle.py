@@ -190,20 +190,6 @@ class TestTool:
         assert re.search(r'quadrant_glitch .* FAIL  outwards at [+-][xy], counterclockwise', out)
         assert err == f'stickslip: {X}, {Y} does not keep {limits}: quadrant_glitch\n'
 
-    @pytest.mark.parametrize(('arguments', 'words'), [
-        ([X, Y], ["Missing option '--limits'"]),
-        ([X, Y, '--circle', '--positioning'], ['exclude each other']),
-        ([X, Y, '--limits', CIRCLE, '--radius', '0.05'], ['--radius and --plot need --circle']),
-        ([X, '--circle'], ['--circle = ', 'two axes: RUN_X RUN_Y, or a bag of both']),
-        ([X, Y, X, '--circle'], ['two axes: RUN_X RUN_Y']),
-        ([X, Y, '--circle', '--radius', '0.0'], ['--radius = 0.0', '> 0']),
-        ([X, Y, '--circle', '--limits', POSITIONS], ['positioning_accuracy', 'one of circular_deviation', 'by itself']),
-        ([X, '--limits', CIRCLE], ['circular_deviation', 'one axis', '--circle RUN_X RUN_Y']),
-        ([X, Y, '--circle', '--set', 'drive.amplitude=0.0'], ['--circle = ', 'a whole turn of 360 degrees']),
-    ])
-    def test_refusals(self, arguments: list[str], words: list[str], capsys: Capture) -> None:
-        refused(capsys, *arguments, '--duration', '1', words=words)
-
     @pytest.mark.parametrize(('text', 'words'), [
         (f'circle: {{radius: -1.0}}\n{GLITCH}', ['circle.radius = -1.0', '> 0']),
         (f'circle: {{centre: [0.0]}}\n{GLITCH}', ['circle.centre = [0.0]', 'two numbers']),

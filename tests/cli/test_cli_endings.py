@@ -4,6 +4,7 @@
 
 import os
 import pty
+import shlex
 import signal
 import subprocess
 import sys
@@ -21,34 +22,21 @@ from stickslip_sim.cli.files import milestones, progress_bar
 from stickslip_sim.cli.main import run
 from stickslip_sim.inputs import load_scene
 from tests.support.repository import ROOT
-from tests.support.tool import Capture, answered, refused, restore_interrupt
+from tests.support.tool import Capture, answered, refusals, refused, restore_interrupt
 from tests.support.waiting import wait_for
 
 
-@pytest.mark.parametrize(('arguments', 'words'), [
-    (['simulate', 'paper_fig7'], ['--duration', 'simulate --help']),
-    (['simulate', '--duration', '1'], ['SCENE']),
-    (['simulate', 'paper_fig7', '--duration', 'long'], ['--duration', 'long', 'float']),
-    (['simulate', 'paper_fig7', '--duration', '-1'], ['duration', '-1', '> 0']),
-    (['simulate', 'paper_fig7', '--duration', 'nan'], ['duration', 'nan', '> 0']),
-    (['simulate', 'paper_fig7', '--duration', 'inf'], ['duration', 'inf', '<= 1e+09 s']),
-    (['simulate', 'no_such_scene', '--duration', '1'], ['no_such_scene', 'paper_fig8']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mas=1'], ['axis.mas']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass=-1'], ['axis.mass', '-1', '>= 1e-09 and']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--set', 'axis.mass'], ['axis.mass']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--knots'], ['--knots', '--events']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--sample-period', '1'], ['--sample-period', '--samples']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--samples', '-', '--sample-period', '0'], ['sample period', '> 0']),
-    (['simulate', 'paper_fig7', '--duration', '1e6', '--samples', '-', '--sample-period', '1e-6'], ['rows']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--events', '-', '--samples', '-'], ['--samples', '--events']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--plot', 'run.jpg'], ['--plot', '.png']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--events', '/dev/null/e.csv'], ['--events', '/dev/null']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--receipt', '/'], ['--receipt', 'file name']),
-    (['simulate', 'paper_fig7', '--duration', '1', '--frobnicate'], ['--frobnicate']),
-    (['sing'], ['sing']),
-])
-def test_wrong_use(arguments: list[str], words: list[str], capsys: Capture) -> None:
-    refused(capsys, *arguments, words=words)
+@pytest.mark.parametrize('row', refusals(Path(__file__).with_name('refusals.txt')), ids=lambda row: row[0][:60])
+def test_wrong_use_gets_one_line_and_leaves_nothing(row: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                                    capsys: Capture) -> None:
+    command, *words = row
+    (tmp_path / 'examples').symlink_to(ROOT / 'examples')
+    (tmp_path / 'limits.yaml').write_text('limits: {sticks: {max: 1}}')
+    (tmp_path / 'my_axis.yaml').touch()
+    (tmp_path / 'my_run').mkdir()
+    monkeypatch.chdir(tmp_path)
+    refused(capsys, *shlex.split(command), words=words)
+    assert {path.name for path in tmp_path.iterdir()} == {'examples', 'limits.yaml', 'my_axis.yaml', 'my_run'}
 
 
 def test_wrong_use_where_click_is_older(monkeypatch: pytest.MonkeyPatch, capsys: Capture) -> None:

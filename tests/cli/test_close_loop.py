@@ -3,6 +3,7 @@
 """`stickslip close-loop`: controllers from files."""
 
 import json
+import shlex
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -12,7 +13,7 @@ from stickslip_sim.check.verification import verify
 from stickslip_sim.controllers.own_controller import load_controller, parse_gain
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.recording import read_run
-from tests.support.tool import Capture, answered, done, refused
+from tests.support.tool import Capture, answered, done, refusals, refused
 
 OWN = '''
 from dataclasses import dataclass
@@ -101,44 +102,14 @@ def test_to_standard_output(capsys: Capture) -> None:
     assert json.loads(out)['receipt']['controller']['name'] == 'still'
 
 
-@pytest.mark.parametrize(('arguments', 'said'), [
-    (['own.py:Owns'], "controller = 'own.py:Owns' is refused: must be a class, function or callable object of own.py; "
-                     'did you mean Own?'),
-    (['own.py:number'], 'there are: Own, still, agrees, fails, Needs, ready'),
-    (['own.py'], 'must be FILE.py:NAME'),
-    (['ownn.py:Own'], 'did you mean own.py?'),
-    (['own.py:Own', '--gain', 'kq=3'], "'Own(kq=3)' is refused: must be Own(kp: float = 5.0, name: str = '') -> None"),
-    (['own.py:Own', '--gain', 'kp'], "--gain = 'kp' is refused: must be NAME=VALUE"),
-    (['own.py:still', '--gain', 'kp=3'], 'kp = 3 is refused: must be omitted: still is not a class'),
-    (['own.py:Needs', '--gain', 'kp=3'], 'ValueError: kp is too large (own.py, line '),
-    (['own.py:Own'], "Own raised AttributeError: 'NoneType' object has no attribute 'velocity' (own.py, line "),
-    (['own.py:Own'], 'without setpoint= or --setpoint measured.setpoint is None: give it'),
-    (['own.py:Own', '--gain', 'kp=fast'], "gain kp = 'fast' is refused: must be a number"),
-    (['own.py:agrees'], 'velocity of agrees after step 0 (t = 0 s) = True is refused: must be a number within ±1 m/s '
-                        '(command.max_velocity); return the velocity of the drive'),
-    (['own.py:still', '--duration', '0.0015'], 'duration = 0.0015 is refused: must be 0.001 to 10000 s, a whole number '
-                                              'of steps of 0.001 s; for example 0.002'),
-    (['own.py:still', '--duration', '1e9'], 'must be 0.001 to 10000 s'),
-    (['own.py:still', '--duration', '-1'], 'must be 0.001 to 10000 s'),
-    (['own.py:fails'], 'velocity of fails after step 41 (t = 0.041 s) = 1.11'),
-    (['own.py:fails', '--set', 'command.max_velocity=1e6'], 'fails raised ZeroDivisionError: '),
-    (['own.py:still', '--rate', '300'], 'rate = 300.0 is refused'),
-    (['own.py:still', '--setpoint', 'limits.yaml'], "setpoint = 'time' is refused: must be the name of one"),
-    (['own.py:still', '--setpoint', 'mvoe.csv'], 'did you mean move.csv?'),
-    (['own.py:still', '--duration', '2', '--setpoint', 'move.csv'], "setpoint = '0 to 1 s' is refused"),
-    (['own.py:still', '--junit', 'x.xml'], '--junit needs --limits'),
-    (['own.py:still', '--set', 'axis.mass=-1'], 'axis.mass = -1'),
-    (['raises.py:Own'], 'ZeroDivisionError: division by zero (raises.py, line 1)'),
-    (['leaves.py:Own'], 'must be a file that can be imported; SystemExit: 3 (leaves.py, line 2)'),
-    (['wrong.py:Own'], 'SyntaxError: '),
-])
-def test_refused_in_one_line_and_nothing_is_written(arguments: list[str], said: str, folder: Path, capsys: Capture
-                                                    ) -> None:
+@pytest.mark.parametrize('row', refusals(Path(__file__).with_name('close_loop_refusals.txt')), ids=lambda row: row[0])
+def test_refused_in_one_line_and_nothing_is_written(row: list[str], folder: Path, capsys: Capture) -> None:
+    given, *words = row
     (folder / 'raises.py').write_text('1 / 0\n')
     (folder / 'leaves.py').write_text('import sys\nsys.exit(3)\n')
     (folder / 'wrong.py').write_text('def f(:\n')
     before = {path.name for path in folder.iterdir()}
-    assert said in refused(capsys, 'close-loop', *LOOP, *arguments, '--out', 'run', '--plot', 'run.png')
+    refused(capsys, 'close-loop', *LOOP, *shlex.split(given), '--out', 'run', '--plot', 'run.png', words=words)
     assert {path.name for path in folder.iterdir()} - {'__pycache__'} == before
 
 

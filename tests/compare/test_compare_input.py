@@ -101,14 +101,6 @@ def test_unreadable_compressions(fig8_bag: Path, tmp_path: Path, capsys: Capture
     assert 'run_0.mcap.zstd is not read' in refused(capsys, tmp_path, tmp_path / 'packed')
 
 
-@pytest.mark.parametrize(('arguments', 'word'), [
-    (['--duration', '0', 'paper_fig7'], 'duration'), (['--duration', 'nan', 'paper_fig7'], 'duration'),
-    (['--duration', '2e4', 'paper_fig7'], 'at most 50000 events'),
-    (['--set', 'axis.mass=-1.0', 'paper_fig7'], 'axis.mass'), (['paper_fig7'] * 9, 'at most 8'), ([], 'RUN_OR_SCENE')])
-def test_wrong_use(arguments: list[str], word: str, tmp_path: Path, capsys: Capture) -> None:
-    assert word in refused(capsys, tmp_path, *arguments)
-
-
 @pytest.mark.parametrize('option', [['--duration', '1'], ['--set', 'axis.mass=1.0']])
 def test_options_for_scenes_alone(option: list[str], fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
     assert 'applies to scenes' in refused(capsys, tmp_path, fig8_bag, *option)

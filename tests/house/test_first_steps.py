@@ -34,9 +34,12 @@ README_AXIS, *README_COMMANDS = (
         encoding='utf-8').partition('### You know ROS')[2].partition('The wheels lack')[0], re.MULTILINE))
 
 
-def python(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([sys.executable, *map(str, arguments)], capture_output=True, text=True, timeout=60,
-                          check=False)
+def said_by(example: str | Path, *arguments: str, code: int = 0) -> str:
+    """Run an example in a fork; return what it says on both streams."""
+    with running(program=str(example), options=arguments) as process:
+        ended, said = process.wait()
+    assert ended == code, said
+    return said
 
 
 @contextmanager
@@ -62,7 +65,8 @@ class TestDemonstration:
     """`make run`."""
 
     def test_it_records_and_has_nothing_to_complain_of(self, tmp_path: Path) -> None:
-        done = python('-m', 'stickslip_sim.ros.demo', '--duration', '1', '--out', tmp_path)
+        done = subprocess.run([sys.executable, '-m', 'stickslip_sim.ros.demo', '--duration', '1', '--out', tmp_path],
+                              capture_output=True, text=True, timeout=60, check=False)
         assert (done.returncode, done.stderr) == (0, '')
         verdict = re.search(r'^verdict  real-time valid: (yes|no), worst ', done.stdout, re.MULTILINE)
         assert verdict is not None
@@ -100,8 +104,7 @@ class TestDrive:
     def test_the_commands_of_the_readme(self, axis: Client, capsys: Capture) -> None:
         (program, script, velocity), inject, off = README_COMMANDS
         assert (program, script, inject[0], off[0]) == ('python3', 'examples/drive.py', 'stickslip', 'stickslip')
-        done = python(ROOT / script, velocity)
-        assert done.returncode == 0, done.stderr
+        said_by(ROOT / script, velocity)
         wait_for(lambda: axis.latest('slider_state').drive_velocity == float(velocity), 'its effect')
         assert answered(capsys, *inject[1:])[1].startswith('friction_scale_1 (friction_scale 1.5) begins ')
         code, said, errors = answered(capsys, *off[1:])
@@ -109,25 +112,20 @@ class TestDrive:
         assert answered(capsys, 'verify', said.split()[-1])[1].startswith('identical, ')
 
     def test_what_is_sent_holds(self, axis: Client) -> None:
-        done = python(DRIVE, '0.004', '--force', '400')
-        assert done.returncode == 0, done.stderr
-        assert done.stderr.splitlines()[-1].endswith('taken: velocity = 0.004 m/s, force = 400.0 N')
+        said = said_by(DRIVE, '0.004', '--force', '400')
+        assert said.endswith('taken: velocity = 0.004 m/s, force = 400.0 N\n')
         wait_for(lambda: axis.latest('slider_state').drive_velocity == 0.004, 'its effect')
 
     @pytest.mark.parametrize('value', ['5.0', 'nan'])
     def test_a_refused_value_is_an_error_of_the_sender(self, axis: Client, value: str) -> None:
         before = axis.latest('slider_state').drive_velocity
-        done = python(DRIVE, value)
-        assert done.returncode == 2    # as of stickslip call
-        assert f'velocity = {value} is refused' in done.stderr
-        assert 'taken' not in done.stderr
+        said = said_by(DRIVE, value, code=2)    # as of stickslip call
+        assert (f'velocity = {value} is refused' in said, 'taken' in said) == (True, False)
         assert axis.latest('slider_state').drive_velocity == before
 
 
 def test_nothing_to_send_is_wrong_use() -> None:
-    done = python(DRIVE)
-    assert done.returncode == 2
-    assert 'give a velocity in m/s' in done.stderr
+    assert 'give a velocity in m/s' in said_by(DRIVE, code=2)
 
 
 def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
@@ -155,8 +153,7 @@ class TestSetpoint:
             axis.connect()
             for _ in range(3):    # one that waits a second for a core goes too far
                 begin = axis.latest('slider_state').position
-                done = python(SETPOINT)
-                assert done.returncode == 0, done.stderr
+                said_by(SETPOINT)
                 rest = axis.next('slider_state', lambda state: state.drive_velocity == 0.0)
                 moved.append(rest.position - begin)
                 if abs(moved[-1] - 0.010) < 1e-3:
@@ -165,18 +162,17 @@ class TestSetpoint:
 
     def test_and_in_lock_step_as_without_ros_to_the_last_digit(self, tmp_path: Path, capsys: Capture) -> None:
         with running(*ENCODERS, '-p', 'time.mode:=lockstep', '-r', '__ns:=/stepped', folder=tmp_path):
-            done = python(SETPOINT, '--ros-args', '-r', '__ns:=/stepped')
-        assert done.returncode == 0, done.stderr
-        assert done.stderr.rpartition(']: ')[2] == 'done: 2000 steps, t = 2 s\n'
-        assert done.stdout.startswith('there: the largest error was 1.')
-        assert done.stderr.count('connected to /stepped/feed_axis') == 1
+            said = said_by(SETPOINT, '--ros-args', '-r', '__ns:=/stepped')
+        assert said.endswith(']: done: 2000 steps, t = 2 s\n')
+        result, = re.findall(r'^there: the largest error was 1\..*\n', said, re.MULTILINE)
+        assert said.count('connected to /stepped/feed_axis') == 1
         example = importlib.util.spec_from_file_location('setpoint', SETPOINT)
         assert example is not None
         assert example.loader is not None
         example.loader.exec_module(module := importlib.util.module_from_spec(example))
         scene = stickslip.load_scene('paper_fig8', {'drive.velocity': 0.0, 'encoder.resolution': 1e-6})
         stickslip.close_loop(module.Follower(), scene, duration=2.0, rate=200.0)
-        assert capsys.readouterr().out.endswith(done.stdout)    # what the node logged stands before it
+        assert capsys.readouterr().out.endswith(result)    # what the node logged stands before it
 
     def test_and_with_measurements_that_get_lost(self, tmp_path: Path) -> None:
         lost = [f'-p faults.{name}:=[{value}]' for name, value in (
@@ -184,9 +180,7 @@ class TestSetpoint:
             ('values', '1.0'))]
         words = [word for words in lost for word in words.split()]
         with running(*ENCODERS, *words, 'time.rate:=400.0', 'time.mode:=lockstep', folder=tmp_path):
-            done = python(SETPOINT)
-        assert done.returncode == 0, done.stderr
-        assert re.match(r'there: the largest error was [1-9]\.', done.stdout)
+            assert re.search(r'^there: the largest error was [1-9]\.', said_by(SETPOINT), re.MULTILINE)
 
 
 class TestFiveMinutes:
@@ -246,11 +240,11 @@ class TestFiveMinutes:
 
     def test_lock_step_gives_the_same_recorded_run_each_time(self, folder: Path, capsys: Capture) -> None:
         with running(*self.STEPPED_AXIS[2:]) as axis:
-            assert python(*self.STEPPER[1:], '--duration', '0.3').returncode == 0
+            said_by(*self.STEPPER[1:], '--duration', '0.3')
             for words in ('record off', 'reset', 'record'):
                 code, _, errors = answered(capsys, 'call', *words.split())
                 assert code == 0, errors
-            assert python(*self.STEPPER[1:], '--duration', '0.2').returncode == 0
+            said_by(*self.STEPPER[1:], '--duration', '0.2')
             assert axis.end()[0] == 0
         first, second = sorted((folder / 'runs').iterdir())
         whole, part = (open_bag(run).columns('/slider_state')['position'].tolist() for run in (first, second))
@@ -259,7 +253,7 @@ class TestFiveMinutes:
 
     def test_in_lock_step_the_check_prints_what_the_page_shows(self, capsys: Capture) -> None:
         with running(*self.STEPPED_AXIS[2:]) as axis:
-            assert python(*self.STEPPER[1:]).returncode == 0
+            said_by(*self.STEPPER[1:])
             assert axis.end()[0] == 0
         code, lines, errors = self.check(capsys)
         assert code == 3, errors

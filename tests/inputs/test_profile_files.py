@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 
 from stickslip_sim.core.errors import InputError, RecordingError
 from stickslip_sim.inputs import load_scene
@@ -63,36 +64,12 @@ def test_units_give_the_decimal_number_that_was_meant() -> None:
 
 
 @pytest.mark.parametrize(('drive', 'rows', 'hint'), [
-    (NAMED, 'time,v\n0,1\n', r'drive\.file_time = .t. is refused: must be the name of one column; there are time, v'),
-    (NAMED, 't,v,v\n0,1,1\n', '2 columns have this name'),
-    (NAMED, '0,1\n1,2\n', 'line 1 = .0,1. is refused: must be the names of the columns'),
-    (f'{NAMED}, file_unit: furlong/s', 't,v\n0,1\n', r'drive\.file_unit = .furlong/s. is refused: must be one of m/s'),
-    (NAMED, 't,v [mm/s]\n0,1\n', r'drive\.file_unit = .m/s. is refused: must be mm/s, as the heading says'),
-    (NAMED, 't,v [furlong]\n0,1\n', r'drive\.file_unit = .furlong. is refused: must be one of m/s, .*state it'),
-    (NAMED, 't,v\n0,1\n\n1,2\n1,3\n', r'feed\.csv line 5 = 1\.0 is refused: must be a time after the one before'),
-    (NAMED, 't,v\n0,1\n1,2\n1.000000000001,3\n', r'drive\.times = \[1\.0, 1\.0+1\] is refused: .*are 1e-12 s apart'),
-    (NAMED, 't,v\n0,1\n# x\n1,nan\n', 'line 4 = .nan. is refused: must be a finite number'),
-    (NAMED, 't,v\n0,1\n1,\n', 'line 3 = .. is refused: must be a finite number'),
-    (NAMED, 't,v\n0,1\n1\n', 'line 3 = .1. is refused: must be 2 columns or more'),
-    (NAMED, 't,v\n0,1\n1,1_0\n', 'line 3 = .1_0. is refused'),
-    (NAMED, 't,v\n0,1\n1,2e6\n', r'line 3 = 2000000\.0 is refused: must be >= -1e\+06 and <= 1e\+06 m/s'),
-    (NAMED, 'x' * 200_000 + ',t,v\n0,1,2\n', r'feed\.csv = .x+. is refused: must be a line of a CSV file'),
-    (NAMED, 't,v\n0,"1\n1,2\n', r'drive\.file = .feed\.csv. is refused: must be lines of numbers'),
-    (NAMED, '', r'drive\.file = .feed\.csv. is refused: .*empty'),
-    (NAMED, 't,v\n# 1,2\n', 'it has no numbers'),
-    (NAMED, 't,v\n12.3,1\n12.4,1\n', r'line 2 = 12\.3 is refused: .*set drive\.file_begin .* like 12\.3'),
-    (f'{NAMED}, file_begin: 3.0', 't,v\n0,1\n1,2\n', r'drive\.file_begin = 3\.0 is refused: must be within'),
-    (f'{NAMED}, course: sine', 't,v\n0,1\n', r'drive\.file = .* is refused: must be omitted with drive\.course: sine'),
-    (f'{NAMED}, times: [0.0]', 't,v\n0,1\n', r'drive\.file = .* is refused: must be omitted with drive\.times'),
-    (f'{NAMED}, file_resample: 1.0e-6', 't,v\n0,1\n9,2\n', 'at most 200000 points; this would be 9000001'),
-    ('course: table, file_unit: mm/s', '', r'drive\.file_unit = .* is refused: must be in a scene file with'),
-    ('file: fed.csv', '', r'No such file or directory; did you mean .*feed\.csv\?'),
-    ('file: nowhere.csv', '', r'drive\.file = .* is refused: must be a readable CSV file; No such file'),
-    (f'{NAMED}, file_unit: 3.0', 't,v\n0,1\n', r'drive\.file_unit = 3\.0 is refused: .* put it in quotes'),
+    *yaml.safe_load(Path(__file__).with_name('profiles_refused.yaml').read_text(encoding='utf-8')),
+    ('NAMED', 'x' * 200_000 + ',t,v\n0,1,2\n', r'feed\.csv = .x+. is refused: must be a line of a CSV file'),
 ])
 def test_one_error_says_what_is_wrong_and_where(tmp_path: Path, drive: str, rows: str, hint: str) -> None:
     with pytest.raises(InputError, match=hint) as caught:
-        scene_of(tmp_path, drive, rows)
+        scene_of(tmp_path, drive.replace('NAMED', NAMED), rows)
     assert 'scene.yaml: ' in str(caught.value)
 
 

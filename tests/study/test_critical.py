@@ -57,7 +57,7 @@ from stickslip_sim.study.sample import Distribution
 from stickslip_sim.study.sweep import processes
 from tests.support.axes import instant
 from tests.support.repository import ROOT
-from tests.support.tool import Capture, done, refused
+from tests.support.tool import Capture, done
 
 pytestmark = pytest.mark.slow
 
@@ -410,20 +410,6 @@ def test_the_tool_prints_draws_and_writes_it(tmp_path: Path, capsys: Capture) ->
     assert (tmp_path / 'u.png').stat().st_size > 10_000
 
 
-@pytest.mark.parametrize(('options', 'said'), [
-    (('--between', '0.01:0.1'), '--between needs --of'),
-    (('--of', 'drive.velocity', '--resume'), '--of does not take --duration or --resume'),
-    (('--of', 'drive.velocity', '--duration', '10'), '--of does not take --duration or --resume'),
-    (('--of', 'axis.normal_force'), '--of = .axis.normal_force. is refused: must be another parameter'),
-    (('--of', 'drive.velocity', '--between', '1:100'), 'add --allow-implausible drive.velocity'),
-    (('--of', 'drive.speed'), 'did you mean'),
-])
-def test_wrong_use_is_refused(options: tuple[str, ...], said: str, tmp_path: Path, capsys: Capture) -> None:
-    given = ('uncertainty', 'paper_fig7', '--with', ROOT / 'examples/friction.yaml', '--out', tmp_path / 'spread')
-    assert said.replace('.axis.normal_force.', "'axis.normal_force'") in refused(capsys, *given, *options)
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_parameter_that_is_drawn_is_refused() -> None:
     with pytest.raises(InputError, match='another parameter than those that are drawn'):
         study_of({}, uniform('drive.velocity', 1e-3, 1e-2))
@@ -461,16 +447,3 @@ def test_the_tool_prints_what_is_undecided(capsys: Capture) -> None:
     low, high = re.findall(r'between ([\d.]+) and ([\d.]+) N', out)[0]
     assert float(low) < 2098.9463 < 2098.9472 < float(high)
     assert max(len(low), len(high)) <= 10    # the stretch is 0.001 N wide
-
-
-@pytest.mark.parametrize(('arguments', 'said'), [
-    (['--of', 'axis.mas'], 'axis.mass'), (['--of', 'contact.model'], 'a number'),
-    (['--of', 'axis.mass', '--between', '1'], 'LOW:HIGH'), (['--of', 'axis.mass', '--between', '5:1'], 'swap'),
-    (['--of', 'axis.mass', '--between', 'a:1'], 'finite number'), (['--of', 'axis.mass', '--between', '-1:1'], '1e-09'),
-    (['--of', 'axis.mass', '--accuracy', '0'], '--accuracy'),
-    (['--of', 'axis.mass', '--accuracy', 'nan'], '--accuracy'),
-    (['--of', 'force.constant'], '--between'), (['--of', 'contact.stiffness'], '--between'),
-    (['--of', 'contact.stiffness', '--between', '1:2'], 'contact.model'),
-    (['--of', 'friction.kinetic.coefficients[7]', '--between', '0.1:0.2'], 'has 2')])
-def test_wrong_use_gets_one_line(arguments: list[str], said: str, capsys: Capture) -> None:
-    assert said in refused(capsys, 'critical', 'paper_fig7', *arguments)

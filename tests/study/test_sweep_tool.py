@@ -176,22 +176,6 @@ def test_resuming_another_study_is_refused(tmp_path: Path, capsys: Capture) -> N
     assert 'versions' in refused(capsys, 'sweep', *SMALL, '--out', out, '--resume')
 
 
-@pytest.mark.parametrize(('arguments', 'said'), [
-    (['paper_fig7', '--over', 'friction.kinetic.coefficients[01]=0.04:0.06:3'], 'did you mean'),
-    (['paper_fig7', '--over', 'axis.mass=1:2:3', '--sobol', '8'], 'no N'),
-    (['paper_fig7', '--over', 'axis.mass=1:2', '--sobol', '0'], '--sobol'),
-    (['paper_fig7', '--over', 'axis.mass=1:2', '--sobol', '9999999999'], '--sobol'),
-    (['paper_fig7', '--over', 'axis.mass=1:2:3', '--workers', '0'], '--workers'),
-    (['paper_fig7', '--over', 'axis.mass=1:2:3', '--workers', 'two'], '--workers'),
-    (['paper_fig7', '--over', 'axis.mass=1:2:3', '--duration', '-1'], 'duration'),
-    (['no_such', '--over', 'axis.mass=1:2:3'], 'no_such'), (['paper_fig7'], '--over'),
-    (['paper_fig7', '--over', 'axis.mass=1:2:1000000', '--over', 'axis.drive_damping=1:2:1000000'], 'MB of memory')])
-def test_wrong_use_gets_one_line_and_leaves_nothing(arguments: list[str], said: str, tmp_path: Path,
-                                                    capsys: Capture) -> None:
-    assert said in refused(capsys, 'sweep', *arguments, '--out', tmp_path / 'no' / 'where' / 'out')
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_places_that_cannot_be_are_refused(tmp_path: Path, capsys: Capture) -> None:
     (tmp_path / 'there').mkdir()
     (tmp_path / 'there' / 'file').touch()

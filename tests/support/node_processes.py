@@ -10,6 +10,7 @@ import ctypes
 import multiprocessing
 import os
 import resource
+import runpy
 import signal
 import sys
 from collections.abc import Callable, Iterator, Sequence
@@ -68,6 +69,10 @@ class _Start(NamedTuple):
         os.dup2(os.open(self.errors, os.O_WRONLY | os.O_APPEND), 2)
         sys.stderr = os.fdopen(2, 'w', buffering=1, encoding='utf-8', closefd=False)
         self.prepare()
+        if self.program.endswith('.py'):
+            sys.stdout, sys.argv = sys.stderr, [self.program, *self.arguments]
+            runpy.run_path(self.program, run_name='__main__')
+            raise SystemExit(0)
         if self.path:
             os.execve(self.path, [self.path, *self.arguments], self.environment)
         from stickslip_sim.ros import executables
@@ -116,7 +121,8 @@ class NodeProcess:
 
     It is forked, unless it is to start `afresh`, as a user starts the installed script.  Once it was waited for, `code`
     and `errors` are its exit code and standard error, which is kept in a file: into a pipe that nobody empties a
-    program that lives long writes 64 kB, and then stands still.
+    program that lives long writes 64 kB, and then stands still.  Of a `program` that is a Python file both streams are
+    kept.
     """
 
     def __init__(self, *words: str | Path, folder: Path | None = None, prepare: Callable[[], None] = restore_interrupt,
@@ -124,7 +130,7 @@ class NodeProcess:
         self.code: int | None = None
         self.errors = ''
         self._errors = TemporaryFile('w+', encoding='utf-8')    # noqa: SIM115  # closed when it was read
-        start = _Start(program, executable(program) if afresh else '', [*options, *ros_args(*words)],
+        start = _Start(program, executable(program) if afresh else '', [*options, *(ros_args(*words) if words else ())],
                        folder or Path.cwd(), dict(os.environ), f'/proc/{os.getpid()}/fd/{self._errors.fileno()}',
                        prepare)
         _start_server()

@@ -48,6 +48,12 @@ def refused(capsys: Capture, *arguments: str | Path, code: int = 2, words: Itera
     return err
 
 
+def refusals(file: Path) -> list[list[str]]:
+    """Return the rows of a table of what is refused: a command line, and words of the line that refuses it."""
+    rows = file.read_text(encoding='utf-8').splitlines()
+    return [row.split(' | ') for row in rows if row and not row.startswith('#')]
+
+
 def tool(*arguments: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run the tool in a process of its own."""
     return subprocess.run([sys.executable, '-m', 'stickslip_sim', *map(str, arguments)], capture_output=True, text=True,
