@@ -4,7 +4,6 @@
 
 import json
 import re
-import signal
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,7 +13,7 @@ from stickslip_sim.check.measures import CIRCLE_KINDS, KINDS
 from stickslip_sim.cli.main import run
 from stickslip_sim.figures.positioning import PositioningFigures
 from stickslip_sim.inputs import load_scene
-from stickslip_sim.recording import OfflineBag, RunFacts, open_bag
+from stickslip_sim.recording import OfflineBag, RunFacts
 from stickslip_sim.recording.offline_bag import StepMessages
 from stickslip_sim.runs import simulate
 from tests.support.check_files import DURATION, LIMITS, checked, cut, limits_file, node_bag, refused
@@ -205,30 +204,3 @@ class TestRuns:
                              tmp_path / 'c.xml')
         suite = ElementTree.parse(tmp_path / 'c.xml').getroot()
         assert (code, suite.attrib['name'], suite[1][0].text) == (3, 'a?<&"', 'no? & <')
-
-
-@pytest.mark.ros
-def test_a_run_of_the_node_has_the_figures_of_the_simulation(tmp_path: Path, capsys: Capture) -> None:
-    from tests.support.node_processes import running
-    from tests.support.ros_nodes import client
-
-    folder = tmp_path / 'run'
-    text = 'commands: optional\nwindow: {end: 1.0}\nlimits: {' + ''.join(
-        f'{name}: {{max: 1}}, ' for name in ('following_error', 'sticks', 'longest_stick', 'peak_speed')) + '}'
-    limits = limits_file(tmp_path, text)
-    with running('-r', '__ns:=/cell', '-p', 'scene:=paper_fig7', '-p', 'record.enabled:=true', '-p',
-                 f'record.folder:={folder}') as process, client('/cell') as axis:
-        axis.connect()
-        axis.next('slider_state', lambda state: state.time > 1.0)
-        assert process.end(signal.SIGINT)[0] == 0
-    found = []
-    for source in ([folder], ['paper_fig7', '--duration', '1.0']):
-        code, out, _ = checked(capsys, *source, '--limits', limits, '--json', '-')
-        assert code == 0
-        found.append(json.loads(out)['limits'])
-    assert found[0] == found[1]
-    (tmp_path / 'timing.yaml').write_text('limits: {timing: valid}')
-    code, out, _ = checked(capsys, folder, '--limits', tmp_path / 'timing.yaml')
-    receipt = open_bag(folder).receipt['timing']
-    assert code == (0 if receipt['valid'] else 3)
-    assert receipt['verdict'] in out

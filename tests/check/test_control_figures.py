@@ -218,15 +218,3 @@ class TestMatrix:
         assert head.split() == ['run', 'sticks', 'peak_speed']
         assert [row.split() for row in rows] == [['paper_fig7', '1', '14.561', 'mm/s'],
                                                  ['fast_feed', '0', '175.34', 'mm/s', 'FAIL']]
-
-
-@pytest.mark.parametrize(('text', 'words'), [
-    ('limits: {lowest_speed: {max: 1.0}}', ['lowest_speed.max', 'one of check, min, window', 'min']),
-    ('limits: {lowest_speed: {min: -1.0}}', ['lowest_speed.min = -1.0', '>= 0']),
-    ('limits: {standstill: {max: 1.0}}', ['standstill.speed', 'add it']),
-    ('limits: {standstill: {speed: 0.0, max: 1.0}}', ['standstill.speed = 0.0', '> 0 ']),
-    ('limits: {reversal_spike: {max: 1.0}}', ['reversal_spike.within', 'add it']),
-    ('limits: {move_settling_time: {max: 1.0}}', ['move_settling_time.band', 'add it']),
-])
-def test_limits_that_say_too_little(text: str, words: list[str], tmp_path: Path, capsys: Capture) -> None:
-    refused(capsys, 'paper_fig7', '--duration', '1', '--limits', limits_file(tmp_path, text), words=words)

@@ -77,11 +77,6 @@ def test_summary_for_people(capsys: Capture) -> None:
         assert words in out
 
 
-def test_summary_of_smooth_sliding(capsys: Capture) -> None:
-    assert run(['simulate', 'fast_feed', '--duration', '3']) == 0
-    assert 'smooth sliding' in capsys.readouterr().out
-
-
 def test_events_to_standard_output_are_exact(capsys: Capture) -> None:
     out = done(capsys, 'simulate', 'paper_fig8', '--duration', '3', '--events', '-')
     assert out.splitlines()[0] == EVENT_HEADER

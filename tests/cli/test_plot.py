@@ -101,24 +101,6 @@ class TestRefusals:
         line = refused(capsys, 'plot', fig8_bag, '--window', 'first_command:+1', '--out', tmp_path / 'a.png')
         assert 'must be A:B in a run without commands' in line
 
-    @pytest.mark.parametrize('name', ['run.jpg', 'run', 'run.png.gz'])
-    def test_another_ending(self, name: str, tmp_path: Path, capsys: Capture) -> None:
-        line = refused(capsys, 'plot', 'paper_fig8', '--duration', '1', '--out', tmp_path / name)
-        assert 'must be a file ending in .png, .pdf or .svg; the ending selects the format' in line
-
-    @pytest.mark.parametrize('window', ['1', '2:1', '1:1', 'a:b', '1:2:3', ':', 'nan:1', '1:+0',
-                                        'first_command:3', 'first_command:+-1'])
-    def test_what_is_no_window(self, window: str, tmp_path: Path, capsys: Capture) -> None:
-        line = refused(capsys, 'plot', 'paper_fig8', '--duration', '3', '--window', window, '--out', tmp_path / 'a.png')
-        assert 'must be A:B or A:+B, times in s, A before B; or first_command:+B; for example 2.5:4' in line
-
-    @pytest.mark.parametrize('window', ['1:4', '-1:2', '5:6', '0:inf'])
-    def test_a_window_beyond_the_run(self, window: str, tmp_path: Path, capsys: Capture) -> None:
-        line = refused(capsys, 'plot', 'paper_fig8', '--duration', '3', f'--window={window}', '--out',
-                       tmp_path / 'a.png')
-        assert 'must be A:B with 0 <= A < B <= 3 s, the time of the run' in line
-        assert not list(tmp_path.iterdir())
-
     def test_what_is_for_scenes_only(self, fig8_bag: Path, capsys: Capture) -> None:
         assert '--duration and --set apply to scenes' in refused(capsys, 'plot', fig8_bag, '--duration', '1')
         assert 'A scene needs --duration' in refused(capsys, 'plot', 'paper_fig8')

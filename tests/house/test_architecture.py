@@ -39,9 +39,11 @@ import stickslip_sim
 print(*sorted(name for name in set(sys.modules) - before if name.partition('.')[0] not in sys.stdlib_module_names))
 run = stickslip_sim.simulate(stickslip_sim.load_scene('paper_fig7'), 0.1)
 print(len(run.samples['time']), {'matplotlib', 'rclpy', 'mcap', 'pandas', 'click'} & set(sys.modules))
+import stickslip_sim.plots
+print('matplotlib.pyplot' in sys.modules)    # the global state of matplotlib
 '''
         assert in_a_process(program, compiled=False).splitlines() == [
-            'stickslip_sim stickslip_sim.core stickslip_sim.core.version', '101 set()']
+            'stickslip_sim stickslip_sim.core stickslip_sim.core.version', '101 set()', 'False']
 
     def test_an_installed_package_starts_without_a_compiler(self, in_a_process: Program) -> None:
         """Its hot path was compiled while it was built, from these very sources."""

@@ -127,10 +127,10 @@ def test_a_test_that_stands_still_or_kills_its_process_takes_no_other_with_it(tm
         (tmp_path / f'test_{name}.py').write_text(f'{passing.format("done")}{test}\n\n{passing.format("last")}')
     for number in range(10):
         (tmp_path / f'test_b{number}.py').write_text(passing.format('done'))
-    said = output('env', f'PYTHONPATH={os.pathsep.join([str(ROOT), *sys.path])}', sys.executable, '-m', 'pytest',
-                  '-c', ROOT / 'pyproject.toml', '--rootdir', tmp_path, tmp_path, '-p', 'no:cacheprovider',
-                  '--dist', 'loadfile', '--no-loadscope-reorder', '--tx', '2*popen', '-o', 'faulthandler_timeout=1',
-                  code=1)
+    said = output('env', f'PYTHONPATH={os.pathsep.join([str(ROOT), *sys.path])}', 'PYTEST_DISABLE_PLUGIN_AUTOLOAD=1',
+                  sys.executable, '-m', 'pytest', '-c', ROOT / 'pyproject.toml', '--rootdir', tmp_path, tmp_path,
+                  '-p', 'no:cacheprovider', '-p', 'xdist.plugin', '--dist', 'loadfile', '--no-loadscope-reorder',
+                  '--tx', '2*popen', '-o', 'faulthandler_timeout=1', code=1)
     assert said.count(' in test_it\n') >= 2     # the stacks of those that stand still
     for name in ENDS:
         assert f"crashed while running 'test_{name}.py::test_it'" in said

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,10 +18,10 @@ import pytest
 import stickslip_sim as stickslip
 from stickslip_sim.check.observed_run import timing_of
 from stickslip_sim.recording import open_bag
-from tests.support.node_processes import attentive, recording_into, running
+from tests.support.node_processes import NodeProcess, attentive, recording_into, running
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client
-from tests.support.tool import Capture, answered, restore_interrupt
+from tests.support.tool import Capture, answered
 from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -34,31 +34,20 @@ README_AXIS, *README_COMMANDS = (
         encoding='utf-8').partition('### You know ROS')[2].partition('The wheels lack')[0], re.MULTILINE))
 
 
+def started(example: str | Path, *arguments: str) -> AbstractContextManager[NodeProcess]:
+    """Run an example in a fork, which keeps what it says on both streams."""
+    return running(program=str(example), options=arguments)
+
+
+def ended(program: NodeProcess, code: int = 0) -> str:
+    """Return what a program has said when it has ended."""
+    assert program.wait()[0] == code, program.errors
+    return program.errors
+
+
 def said_by(example: str | Path, *arguments: str, code: int = 0) -> str:
-    """Run an example in a fork; return what it says on both streams."""
-    with running(program=str(example), options=arguments) as process:
-        ended, said = process.wait()
-    assert ended == code, said
-    return said
-
-
-@contextmanager
-def started(*command: str | Path) -> Iterator['subprocess.Popen[str]']:
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                               preexec_fn=restore_interrupt)
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
-
-
-def interrupt(process: 'subprocess.Popen[str]') -> str:
-    """End a program as Ctrl-C does; return what it said, from what was not yet read on."""
-    process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=DEADLINE)
-    assert process.returncode == 0, errors
-    return errors
+    with started(example, *arguments) as program:
+        return ended(program, code)
 
 
 class TestDemonstration:
@@ -131,19 +120,18 @@ def test_nothing_to_send_is_wrong_use() -> None:
 def test_the_examples_say_once_that_they_wait_for_an_axis() -> None:
     """In a namespace where there is none, and where there is one; all at once, as each takes its time."""
     nowhere = '--ros-args', '-r', '__ns:=/nowhere'
-    with ExitStack() as ended:
-        ended.enter_context(running('-r', '__ns:=/cell', 'time.rate:=100.0'))
+    with ExitStack() as stack:
+        stack.enter_context(running('-r', '__ns:=/cell', 'time.rate:=100.0'))
         with client('/cell') as found:
             found.connect()
-        waiting = [ended.enter_context(started(sys.executable, *example, *nowhere)) for example in (
+        waiting = [stack.enter_context(started(*example, *nowhere)) for example in (
             [CONTROLLER], [SETPOINT], [LOCKSTEP], [DRIVE, '0.001'])]
         for each in waiting:
-            assert each.stderr
-            line = each.stderr.readline()
+            wait_for(lambda: '\n' in each.said, 'a line')    # noqa: B023
+            _, line = each.end()
             assert 'waiting for an axis: start sim_node ' in line
             assert line.endswith('with this ROS_DOMAIN_ID; axes run in: /cell (--ros-args -r __ns:=NAMESPACE)\n')
-            each.send_signal(signal.SIGINT)
-            assert each.communicate(timeout=DEADLINE)[1] == ''
+            assert line.count('\n') == 1
 
 
 class TestSetpoint:
@@ -221,10 +209,11 @@ class TestFiveMinutes:
         with running(*self.AXIS[2:], 'time.rate:=500.0') as axis, client() as listener:    # for half the cost
             listener.next('slider_state', lambda state: state.time > self.HUMAN)
             assert listener.latest('slider_state').drive_velocity == 0.0    # it rests until the first command
-            with started(sys.executable, *self.CONTROLLER[1:]) as controller:
+            with started(*self.CONTROLLER[1:]) as controller:
                 first = listener.next('slider_state', lambda state: state.drive_velocity != 0.0).time
                 listener.next('slider_state', lambda state: state.time > first + self.CHECKED + 0.1)
-                assert re.fullmatch(self.SAID, interrupt(controller))
+                controller.send(signal.SIGINT)
+                assert re.fullmatch(self.SAID, ended(controller))
                 listener.next('slider_state', lambda state: state.drive_velocity == 0.0)
             _, said = axis.end()
         code, lines, errors = self.check(capsys)

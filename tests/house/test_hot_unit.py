@@ -10,6 +10,7 @@ import zlib
 from pathlib import Path
 
 import pytest
+import yaml
 
 from stickslip_sim.core import hot_path
 from tests.support.repository import ROOT
@@ -93,21 +94,8 @@ static DoubleLong oscillator_swapped(Oscillator osc, bool both, Complex z)
 '''.removeprefix('\n')
 
 
-@pytest.mark.parametrize(('function', 'what'), [
-    ('def f(t) -> float: return t', 'the argument t of f has no type; annotate it'),
-    ('def f(t: float): return t', 'what f returns has no type; annotate it'),
-    ('def f(t: dict[str, float]) -> float: return 0.0', 'the argument t of f has the type dict[str, float], which C '
-     'does not have; take float, int, bool, complex, a tuple of them or a record'),
-    ('def f(t: float = 1.0) -> float: return t',
-     'f has more than plain arguments; write each one out, without defaults'),
-    ('def f(t: float) -> float: return math.gamma(t)', 'f uses math.gamma, which the unit does not take from C'),
-    ('def f(t: float) -> float: return Path(t)', 'f uses Path, which is neither a number nor a marked function'),
-    ('def f(t: float) -> float: return bound(osc=t)', 'f uses bound with names of arguments; give them in order'),
-    ('def f(t: float) -> float: return t @ t', 'f uses t @ t, an operator which the unit does not have'),
-    ('def f(t: float) -> float: return [t]', 'f uses [t], an expression which the unit does not have'),
-    ('def f(t: float) -> float: raise t', "f uses 'raise t', a statement which the unit does not have"),
-    ('def f(t: float) -> bool: return t and True', 'f uses t and True, which is of more than truths; compare each'),
-])
+@pytest.mark.parametrize(('function', 'what'),
+                         yaml.safe_load(Path(__file__).with_name('unit_refused.yaml').read_text(encoding='utf-8')))
 def test_what_c_does_not_have_is_refused_in_one_line(function: str, what: str, tmp_path: Path) -> None:
     package = package_with(function, tmp_path / 'package')
     with pytest.raises(UnitError) as refused:

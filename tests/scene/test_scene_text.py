@@ -200,23 +200,6 @@ def test_a_name_that_is_never_asked_about_is_refused() -> None:
         check_plausible({}, ('drive.velocit',))
 
 
-@pytest.mark.parametrize('verb', [
-    ('simulate', 'paper_fig8', '--duration', '0.1', *FAST),
-    ('plot', 'paper_fig8', '--duration', '0.1', *FAST),
-    ('critical', 'paper_fig8', '--of', 'axis.drive_damping', *FAST),
-    ('critical', 'paper_fig8', '--of', 'drive.velocity', '--between', '1:100'),
-    ('advise', 'paper_fig8', '--tolerance', '1e-3', *FAST),
-    ('compare', 'paper_fig8', '--out', 'figures', *FAST),
-    ('sweep', 'paper_fig8', '--over', 'drive.velocity=1:100:3', '--out', 'study'),
-    ('sweep', 'paper_fig8', '--over', 'friction.kinetic.velocities[1]=1:100:3', '--out', 'study'),
-])
-def test_every_verb_asks(verb: tuple[str, ...], tmp_path: Path, capsys: Capture,
-                         monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert 'is intended, add --allow-implausible ' in refused(capsys, *verb)
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_file_is_named_and_what_is_meant_runs(tmp_path: Path, capsys: Capture) -> None:
     scene = tmp_path / 'fast.yaml'
     scene.write_text('/**: {ros__parameters: {scene: fast, drive: {velocity: 5.0}}}\n')

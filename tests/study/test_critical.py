@@ -43,7 +43,6 @@ from stickslip_sim.study.critical import (
     Critical,
     CriticalStudy,
     critical_drop,
-    critical_feed,
     critical_of,
     critical_values,
     default_range,
@@ -276,13 +275,6 @@ def test_without_a_range_it_looks_about_the_value_of_the_scene() -> None:
 def test_inputs_that_change_with_time_are_refused() -> None:
     with pytest.raises(InputError, match='constant inputs'):
         critical_of(load_scene('cutting_force'), Variation('axis.mass', 100.0, 500.0), ACCURACY)
-
-
-def test_the_closed_form_of_the_feed_is_the_one_of_the_drop() -> None:
-    from stickslip_sim.study.critical import SliderOnDrive
-
-    axis = load_scene('paper_fig4_constant', CONSTANT).axis
-    assert feed_of_theory(axis) == critical_feed(SliderOnDrive(350.0, 6e5, 4000.0), 0.12 * 3432.3275)
 
 
 @pytest.mark.parametrize(('damping', 'grows'), [(7300.0, True), (7450.0, True), (7510.0, False), (7700.0, False)])

@@ -140,6 +140,14 @@ class NodeProcess:
         self.pid = self._process.pid
         self.waits = CoreWaits(self.pid)
 
+    @property
+    def said(self) -> str:
+        """What it has written on standard error so far."""
+        if not self._errors.closed:
+            self._errors.seek(0)
+            self.errors = self._errors.read()
+        return self.errors
+
     def send(self, number: int) -> None:
         self.waits.look()    # it may end
         with suppress(ProcessLookupError):    # it has ended
@@ -167,10 +175,8 @@ class NodeProcess:
     def _ended(self) -> tuple[int, str]:
         self.code = self._process.exitcode
         assert self.code is not None
-        if not self._errors.closed:
-            with self._errors as errors:
-                errors.seek(0)
-                self.errors = errors.read()
+        self.errors = self.said
+        self._errors.close()
         return self.code, self.errors
 
 
