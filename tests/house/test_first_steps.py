@@ -22,7 +22,7 @@ from tests.support.node_processes import NodeProcess, attentive, recording_into,
 from tests.support.repository import ROOT
 from tests.support.ros_nodes import Client, client
 from tests.support.tool import Capture, answered
-from tests.support.waiting import DEADLINE, wait_for
+from tests.support.waiting import wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
