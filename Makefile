@@ -46,8 +46,7 @@ extremes: tools  ## the cases that break other simulators, against their limits 
 bench: build  ## measure every solver beside its peers, and the loop of the node; writes docs/data/ (25 minutes)
 	@ros2_ws/bootstrap --bench
 	@$(HERE) python3 -m stickslip_sim bench --out runs/bench
-	@$(HERE) --own-domain --shared-memory python3 benchmarks/tick.py --json runs/bench/bench.json
-	@$(HERE) python3 -m benchmarks.accuracy runs/bench
+	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.races runs/bench
 	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.loop
 	@$(HERE) --own-domain --shared-memory python3 -m benchmarks.budget
 	@$(HERE) python3 -m benchmarks.paper

@@ -20,8 +20,7 @@ import numpy as np
 
 from stickslip_sim.recording import open_bag
 
-from .hil.measure import bag_figures, node_figures
-from .hil.process import control, node_command, resident, running
+from .hil.process import bag_figures, control, node_command, node_figures, resident, running
 from .hil.slow_listener import TAKES
 from .loop import machine
 from .measured import DATA, keep

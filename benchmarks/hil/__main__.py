@@ -15,8 +15,7 @@ from stickslip_sim.inputs import load_scene
 from ..loop import machine
 from ..measured import DATA, keep
 from . import yardstick
-from .measure import measure, summary
-from .process import COMMANDS, SCENE, SIMULATING
+from .process import COMMANDS, SCENE, SIMULATING, measure, summary
 
 RATE = 1000.0                                       # 1/s, of the comparison
 RATES = (1000, 2000, 4000, 6000, 8000, 10_000, 12_000)

@@ -12,8 +12,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from benchmarks.accuracy import row
 from benchmarks.measured import kept
+from benchmarks.races import row
 from stickslip_sim.axis import InitialState
 from stickslip_sim.bench.contestants import exact_solver
 from stickslip_sim.bench.outside import FIRST_SLIP, Ratio, at_least, at_most, ratios

@@ -11,8 +11,17 @@ from itertools import pairwise
 import mpmath as mp
 import pytest
 
-from benchmarks.smooth_reference import SmoothEvent, SmoothRun
-from benchmarks.smooth_tables import CASES, FEED, LAW, axis_of, breakpoints_on_the_curve, compared, smooth_events
+from benchmarks.smooth_tables import (
+    CASES,
+    FEED,
+    LAW,
+    SmoothEvent,
+    SmoothRun,
+    axis_of,
+    breakpoints_on_the_curve,
+    compared,
+    smooth_events,
+)
 from stickslip_sim.axis import Axis, CompliantContact, Friction, InitialState, RigidContact
 from stickslip_sim.core.errors import InputError, UnsoundError
 from stickslip_sim.core.input_profile import ramp

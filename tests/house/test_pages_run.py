@@ -13,8 +13,8 @@ import pytest
 
 from benchmarks import worked_axis
 from benchmarks.identification import COMMANDS, EXAMPLES, FAILS, TRUTH
-from benchmarks.loop_pictures import PICTURES as LOOP_PICTURES
-from benchmarks.loop_pictures import blocks, page_commands, write_inputs
+from benchmarks.loops_page import PICTURES as LOOP_PICTURES
+from benchmarks.loops_page import blocks, page_commands, write_inputs
 from benchmarks.maps import CRITICAL, PICTURES, UNCERTAIN, picture_of, shortened
 from benchmarks.page import part_of, quoted
 from stickslip_sim.closed_loop.report import tuning_report

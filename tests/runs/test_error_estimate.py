@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from benchmarks.smooth_reference import SmoothRun
+from benchmarks.smooth_tables import SmoothRun
 from stickslip_sim.axis import InitialState
 from stickslip_sim.core.input_profile import steps
 from stickslip_sim.core.types import Event, EventKind

@@ -21,7 +21,9 @@ from benchmarks.classics import (
     NORMAL,
     UNDAMPED,
     Result,
+    coulomb_cycle,
     damped,
+    den_hartog,
     forced_axis,
     grown,
     half_range,
@@ -31,9 +33,7 @@ from benchmarks.classics import (
     sticks_again,
     turning_points,
 )
-from benchmarks.closed_forms import coulomb_cycle, den_hartog
-from benchmarks.naive_switching import exact_slip, naive_slip
-from benchmarks.paper import DATA, PAGE, made
+from benchmarks.paper import DATA, PAGE, exact_slip, made, naive_slip
 from stickslip_sim.axis import Axis, Friction, InitialState, RigidContact
 from stickslip_sim.core.input_profile import constant, ramp
 from stickslip_sim.core.types import EventKind, Mode

@@ -303,13 +303,8 @@ def forced_event(p: Parameters, s: State, due: float) -> None:
             _set_event(s, _root(p, s, osc, signal, 0.0, gap, t, before, t), passed_kind(p, s))
             return
         limits = guard_limits(p, s, t)
-        if _holds_nothing(s, limits):
-            if _is_pushed(p, s):
-                _set_event(s, t, BREAKAWAY)
-                return
-            if signal.amplitude == 0.0:
-                s.next.searched = math.inf
-                return
+        if _holds_nothing(s, limits) and _is_decided(p, s, signal, t):
+            return
         if not slips:
             leap = leap_of(p, s, signal, now, limits, t, max(now.noise, rounding), max(due, 2.0 * s.next.searched) - t)
             if leap == math.inf or _lands_beyond(s, t, leap, due):
@@ -343,12 +338,19 @@ def _holds_nothing(s: State, limits: GuardLimits) -> bool:
 
 
 @compiled
-def _is_pushed(p: Parameters, s: State) -> bool:
-    """Whether a slider that nothing holds begins to move: where the force, 0 within rounding now, has a rate at all."""
-    if p.compliant != 0.0 and moves(s):
-        return True
+def _is_decided(p: Parameters, s: State, signal: GuardSignal, t: float) -> bool:
+    """Let a slider that nothing holds slip at t where the force, 0 within rounding now, has a rate at all.
+
+    Return True if it does, or rests for good.
+    """
     rate, second_rate = force_rate(p, s)
-    return rate != 0.0 or second_rate != 0.0
+    if rate != 0.0 or second_rate != 0.0 or (p.compliant != 0.0 and moves(s)):
+        _set_event(s, t, BREAKAWAY)
+        return True
+    if signal.amplitude == 0.0:
+        s.next.searched = math.inf
+        return True
+    return False
 
 
 @inlined
