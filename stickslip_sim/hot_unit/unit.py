@@ -10,7 +10,7 @@ from pathlib import Path
 from string import Template
 from typing import NamedTuple
 
-from .kinds import RECORD_FILES, Kind, Kinds, Record, TupleKind, declared_as, text_of
+from .kinds import RECORD_FILES, Kind, Kinds, Record, TupleKind, c_name, declared_as, text_of
 from .printer import OF_MATH, head_of, printed
 from .scope import Scope
 from .sources import Constants, Source, Sources, UnitError, digest_of
@@ -118,9 +118,7 @@ class Unit:
             for name in ('plain_c/stickslip_axis.h', 'plain_c/stickslip_axis.c', 'fmu/stickslip_fmu.c'))
         words = dict.fromkeys(('VERSION', 'SEGMENT_SIZE', 'SEGMENTS', 'MODES', 'KINDS'), '')
         records = self.kinds.records
-        for name, record in (('SINUSOID', 'GivenSinusoid'), ('EVENT', 'EventRow'), ('SAMPLE', 'SampleRow'),
-                             ('ENERGY', 'EnergyRow')):
-            words[name] = ''.join(f'double {"static_" if field == "static" else field};' for field in records[record])
+        words |= {name: ''.join(f'double {c_name(field)};' for field in fields) for name, fields in records.items()}
         words['PARAMETERS'] = ''.join(f'AXIS_{field.upper()},' for field, kind in records['Parameters'].items()
                                       if isinstance(kind, str))
         return {'stickslip_axis.h': Template(header).substitute(words),

@@ -334,9 +334,6 @@ static int set(Instance *i, const uint32_t *refs, size_t n, const double *values
                       "what was set before stays");
     }
     next.is_started = next.phase == NEW || next.phase == STARTING ? 0.0 : next.is_started;
-    if (next.is_started + next.has_new_inputs + next.has_new_parameters != 1.0) {
-        next.has_sample = 0.0;
-    }
     i->own = next;
     return fmi3OK;
 }

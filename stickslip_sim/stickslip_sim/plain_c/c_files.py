@@ -65,9 +65,7 @@ def _header() -> dict[str, Any]:
         'PARAMETERS': '\n'.join(f'    AXIS_{name.upper()},   /* {notes[name]} */' for name in PARAMETER_FIELDS),
         'MODES': ''.join(f', AXIS_{mode.name}' for mode in sorted(Mode)[1:]),
         'KINDS': ''.join(f', AXIS_{"ARREST" if kind.name == "STICK" else kind.name}' for kind in sorted(EventKind)[1:]),
-        'SINUSOID': _fields(GivenSinusoid), 'EVENT': _fields(EventRow), 'SAMPLE': _fields(SampleRow),
-        'ENERGY': _fields(EnergyRow),
-    }
+        **{record.__name__: _fields(record) for record in (GivenSinusoid, EventRow, SampleRow, EnergyRow)}}
 
 
 def _example(scene: Scene, duration: float) -> dict[str, Any]:

@@ -53,7 +53,7 @@ typedef struct {
 
 /* A sinusoid on top of the inputs: amplitude sin(2 pi (frequency t + phase)). */
 typedef struct {
-$SINUSOID
+$GivenSinusoid
 } axis_sinusoid;
 
 typedef struct {
@@ -78,15 +78,15 @@ enum { AXIS_STICK$MODES };
 enum { AXIS_BREAKAWAY$KINDS };
 
 typedef struct {
-$EVENT
+$EventRow
 } axis_event;
 
 typedef struct {
-$SAMPLE
+$SampleRow
 } axis_sample_row;
 
 typedef struct {
-$ENERGY
+$EnergyRow
 } axis_energy_row;
 
 typedef struct axis axis;

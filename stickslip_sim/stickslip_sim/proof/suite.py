@@ -13,15 +13,12 @@ from ..report.text import markdown_lines
 from ..report.values import versions
 from .cases.bad_commands import bad_commands
 from .cases.bits import events_inside_a_tick, mirrored_and_scaled, run_twice, splits
-from .cases.break_aways import at_the_limit, blows, coasting, grazing, ringing
 from .cases.energy_balance import cost_of_the_account, energy_balance
-from .cases.estimates import estimates, orders
-from .cases.false_roots import near_critical, shaken, steep_segments, touched_limits
+from .cases.estimates import answers, estimates, orders
+from .cases.guards import guards_at_their_limit, meeting_events, near_critical, shaken, steep_segments, touched_limits
 from .cases.linear_modes import edges_of_the_modes, unstable_slip
-from .cases.rest import rest_times, year_long_hold
 from .cases.scales import late_far_slow_fast, stiff_contacts
-from .cases.study_answers import answers
-from .cases.ties import guards_at_their_limit, meeting_events
+from .cases.sticks import at_the_limit, blows, coasting, grazing, rest_times, ringing, year_long_hold
 from .judges import Extreme, ExtremeResult, Setup
 
 EXTREMES = (
