@@ -13,18 +13,9 @@ from ..runs.error_estimate import ErrorEstimate, error_estimate
 from ..scene import Scene, changed
 from ..sensitivity.sensitivities import Sensitivities, sensitivities
 from ..study.points import works_in_batches
+from . import trial_runs
 from .parts import Changes, Part, Variant, absent_parts, parts_of
-from .trial_runs import (
-    EXACT,
-    ExactRun,
-    Trial,
-    changes_between,
-    costs,
-    reference_of,
-    solver_settings,
-    try_changes,
-    with_costs,
-)
+from .trial_runs import EXACT, ExactRun, Trial
 
 # Which numbers of a scene matter most: by how many percent its motion changes for one percent of each.
 
@@ -71,7 +62,7 @@ class Least(NamedTuple):
 
 def best_trial(reference: ExactRun, part: Part) -> PartTrial:
     """Leave a part out in each of its ways and return the one that changes least; one that is refused comes last."""
-    trials = [PartTrial(part, variant, try_changes(reference, part.name, changes, variant.how))
+    trials = [PartTrial(part, variant, trial_runs.try_changes(reference, part.name, changes, variant.how))
               for variant in part.variants if (changes := variant.changes(reference.scene.values))]
     return min(trials, key=lambda found: _size(found.trial))
 
@@ -82,14 +73,14 @@ def least_scene(reference: ExactRun, trials: Sequence[PartTrial], solvers: Seque
 
     Then take the cheapest solver that keeps the whole in tolerance, too.
     """
-    values, left_out = reference.scene, try_changes(reference, EXACT, {})
+    values, left_out = reference.scene, trial_runs.try_changes(reference, EXACT, {})
     parts: list[str] = []
     for found in sorted(trials, key=lambda found: _size(found.trial)):
         changes = found.variant.changes(values.values)
         if _size(found.trial) > tolerance or not changes:
             continue
-        together = changes_between(reference.scene, changed(values, changes))
-        trial = try_changes(reference, EXACT, together)
+        together = trial_runs.changes_between(reference.scene, changed(values, changes))
+        trial = trial_runs.try_changes(reference, EXACT, together)
         if _size(trial) <= tolerance and trial.scene is not None:
             values, left_out = trial.scene, trial
             parts.append(found.part.name if not found.variant.how else f'{found.part.name} ({found.variant.how})')
@@ -106,7 +97,7 @@ def _with_solver(reference: ExactRun, least: Least, solvers: Sequence[Trial], to
               if trial.cost is not None and trial.cost.median < limit and _size(trial) <= tolerance]
     for _, rival in sorted(rivals, key=lambda pair: pair[0]):
         changes = {**least.changes, **rival.changes}
-        trial = try_changes(reference, rival.name, changes)
+        trial = trial_runs.try_changes(reference, rival.name, changes)
         if _size(trial) <= tolerance:
             return Least(least.parts, rival.name, changes, trial)
     return least
@@ -157,19 +148,20 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int, progres
     if scene.normal_load is not None:
         raise InputError('normal_load.course', scene.values['normal_load.course'], 'omitted for advise',
                          'the solvers are compared under a normal force that does not vary')
-    reference = reference_of(scene, duration)
-    parts, absent, settings = parts_of(reference.scene), absent_parts(reference.scene), solver_settings(scene)
+    reference = trial_runs.reference_of(scene, duration)
+    parts, absent = parts_of(reference.scene), absent_parts(reference.scene)
+    settings = trial_runs.solver_settings(scene)
     report = _Progress(len(parts) + len(absent) + len(settings) + _MEASURING, progress)
     found = [best_trial(reference, part) for part in report.through(parts)]
-    given = [try_changes(reference, part.name, part.changes) for part in report.through(absent)]
-    solved = [try_changes(reference, name, settings[name]) for name in report.through(settings)]
-    cost, trials = with_costs(reference, [*(part.trial for part in found), *given, *solved], rounds)
+    given = [trial_runs.try_changes(reference, part.name, part.changes) for part in report.through(absent)]
+    solved = [trial_runs.try_changes(reference, name, settings[name]) for name in report.through(settings)]
+    cost, trials = trial_runs.with_costs(reference, [*(part.trial for part in found), *given, *solved], rounds)
     report.done(_MEASURING)
     coming = iter(trials)
     found = [part._replace(trial=next(coming)) for part in found]
     given, solved = [next(coming) for _ in given], list(coming)
     least = least_scene(reference, found, solved, tolerance)
-    side_by_side = costs([reference.scene, least.trial.scene or reference.scene], duration, rounds)
+    side_by_side = trial_runs.costs([reference.scene, least.trial.scene or reference.scene], duration, rounds)
     return Advice(reference, cost, error_estimate(reference.run), tolerance, found, given, solved,
                   _finer_tables(reference), least, (side_by_side[0], side_by_side[1]),
                   sensitivities_of(reference))
@@ -178,7 +170,7 @@ def advise(scene: Scene, tolerance: float, duration: float, rounds: int, progres
 def _finer_tables(reference: ExactRun) -> list[Trial]:
     """Return the scene with each table of a smooth law ten times as fine, to see the rest of its error."""
     values = reference.scene.values
-    return [try_changes(reference, what, {name: _FINER * float(values[name])})  # type: ignore[arg-type]
+    return [trial_runs.try_changes(reference, what, {name: _FINER * float(values[name])})  # type: ignore[arg-type]
             for what, name in (('table of mu_k', 'friction.kinetic.tolerance'),
                                ('table of psi', 'friction.excess.tolerance')) if name in values]
 

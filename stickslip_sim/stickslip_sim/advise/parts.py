@@ -34,17 +34,16 @@ class Part(NamedTuple):
 
 def switch(name: str, parameter: str, there: object, without: object) -> Part:
     """Return the part that one choice brings in: `parameter` is `there` with it and `without` else."""
-    def changes(values: SceneValues) -> Changes:
-        return {parameter: without} if values.get(parameter) == there else {}
-
-    return Part(name, (Variant(changes),))
+    return _part(name, lambda values: {parameter: without} if values.get(parameter) == there else {})
 
 
 def number_part(name: str, parameter: str) -> Part:
     """Return the part whose size is one number, so that 0 leaves it out."""
-    def changes(values: SceneValues) -> Changes:
-        return {parameter: 0.0} if values.get(parameter, 0.0) != 0.0 else {}
+    return _part(name, lambda values: {parameter: 0.0} if values.get(parameter, 0.0) != 0.0 else {})
 
+
+def _part(name: str, changes: Change) -> Part:
+    """Return the part that there is one way to leave out."""
     return Part(name, (Variant(changes),))
 
 
@@ -72,10 +71,9 @@ def friction_parts(scene: Scene) -> Iterator[Part]:
 def _tables(what: str, section: str, ordinates: str, values: SceneValues) -> Iterator[Part]:
     """Yield the inner breakpoints of a table, or how fine the table of a smooth law is."""
     for speed in values.get(f'{section}.velocities', ())[1:-1]:
-        without = Variant(_without_breakpoint(section, ordinates, speed))
-        yield Part(f'breakpoint of {what} at {speed * 1e3:.6g} mm/s', (without,))
+        yield _part(f'breakpoint of {what} at {speed * 1e3:.6g} mm/s', _without_breakpoint(section, ordinates, speed))
     for factor in _COARSER:
-        yield Part(f'table of {what}: error {factor:g} times as large', (Variant(_coarser(section, factor, values)),))
+        yield _part(f'table of {what}: error {factor:g} times as large', _coarser(section, factor, values))
 
 
 def _without_breakpoint(section: str, ordinates: str, speed: float) -> Change:
@@ -92,13 +90,7 @@ def _without_breakpoint(section: str, ordinates: str, speed: float) -> Change:
 
 def _coarser(section: str, factor: float, base: SceneValues) -> Change:
     name = f'{section}.tolerance'
-
-    def changes(values: SceneValues) -> Changes:
-        if name not in values or values[name] >= factor * base[name]:
-            return {}
-        return {name: factor * base[name]}
-
-    return changes
+    return lambda values: {name: factor * base[name]} if name in values and values[name] < factor * base[name] else {}
 
 
 def _growth() -> Part:
@@ -148,7 +140,7 @@ def _excess_shape(scene: Scene) -> Part:
         return {f'{_EXCESS}.law': 'table', f'{_EXCESS}.velocities': (0.0, excess.law.limit_velocity),
                 f'{_EXCESS}.fractions': (1.0, 0.0)}
 
-    return Part('curved shape of psi', (Variant(changes),))
+    return _part('curved shape of psi', changes)
 
 
 _INPUTS = (('drive', 'Hz on the drive'), ('force', 'Hz on the force'))
@@ -170,8 +162,8 @@ def _possible_parts(scene: Scene) -> Iterator[Part]:
         if values[f'{section}.course'] == 'sine':
             yield switch(f'sine of {values[f"{section}.frequency"]:g} {where}', f'{section}.course', 'sine', 'constant')
         for k, frequency in enumerate(values.get(f'{section}.frequencies', ())):
-            yield Part(f'sine of {frequency:g} {where}', (Variant(_without_sinusoid(section, k)),))
-    yield Part('external force', (Variant(_without_force),))
+            yield _part(f'sine of {frequency:g} {where}', _without_sinusoid(section, k))
+    yield _part('external force', _without_force)
 
 
 def _without_sinusoid(section: str, k: int) -> Change:

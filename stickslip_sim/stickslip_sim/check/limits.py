@@ -22,20 +22,9 @@ from ..scene import Parameter
 from ..scene.load import named, read_text
 from ..scene.ros_yaml import read_yaml, section
 from ..scene.schema import MOST_POINTS
+from . import observed_run
 from .measures import CIRCLE_KINDS, DWELL, FARTHEST, KINDS, TARGET, TARGETS, TIMING_LIMIT, TOLERANCE, CircleKind, Kind
-from .observed_run import (
-    KnownCommands,
-    ObservedMotion,
-    Reference,
-    commands_of,
-    first_command_of,
-    motion_blocks,
-    observed_motion,
-    setpoint_of,
-    states_of,
-    timing_of,
-    unmeasured,
-)
+from .observed_run import KnownCommands, ObservedMotion, Reference
 
 # The part of a run that a limit is for, in times of the run or from its first command on.
 
@@ -201,9 +190,9 @@ class Limits:
 
     def reference_for(self, run: Run) -> Reference | None:
         """Return the reference in times of a run, or else its setpoint."""
-        first = first_command_of(run)
+        first = observed_run.first_command_of(run)
         if self.reference is None or first is None or not self.window.is_from_command:
-            return self.reference or setpoint_of(run)
+            return self.reference or observed_run.setpoint_of(run)
         return self.reference.later(first)
 
 
@@ -363,18 +352,19 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
     A recording that was cut off is checked as far as it goes.
     """
     limits.check_axes(are_two=False)
-    motion, timing, commands = observed_motion(run), timing_of(run), commands_of(run)
+    motion, timing = observed_run.observed_motion(run), observed_run.timing_of(run)
+    commands = observed_run.commands_of(run)
     has_timing = timing is not None and timing.valid is not None
     check_fit(limits, motion.begin, motion.end if run.is_complete else math.inf, has_timing, commands)
     found = [_begun(limit, motion, commands, limits.needs_commands) for limit in limits.limits]
     open_ones = [one for one in found if isinstance(one, _Open)]
-    for block in motion_blocks(states_of(run), motion.events, limits.reference_for(run)):
+    for block in observed_run.motion_blocks(observed_run.states_of(run), motion.events, limits.reference_for(run)):
         for one in open_ones:
             one.take(block)
     outcomes = [one.outcome() if isinstance(one, _Open) else one for one in found]
     for outcome in outcomes:
         if outcome.value is not None and math.isnan(outcome.value):
-            needed = unmeasured(run, outcome.limit.kind.needs if outcome.limit else ())
+            needed = observed_run.unmeasured(run, outcome.limit.kind.needs if outcome.limit else ())
             raise RecordingError(f'{run.name}: {outcome.name} needs {" and ".join(needed)}, which was not measured; '
                                  'leave this limit out, or import that column too')
     if limits.timing and timing:
@@ -384,12 +374,12 @@ def outcomes_of(limits: Limits, run: Run) -> list[LimitOutcome]:
 
 def positions_of(limits: Limits, run: Run) -> list[PositionFigures]:
     """Return the figures of ISO 230-2 of each target within the window of the file; raises InputError without any."""
-    motion = observed_motion(run)
-    span = limits.window.at(first_command_of(run)) or CheckedSpan()
+    motion = observed_run.observed_motion(run)
+    span = limits.window.at(observed_run.first_command_of(run)) or CheckedSpan()
     begin = motion.begin if span.begin is None else span.begin
     end = motion.end if span.end is None else span.end
     measurement = Measuring(positions_of_targets(motion.cut(begin, end), *limits.positioning))
-    for block in motion_blocks(states_of(run), motion.events, limits.reference_for(run)):
+    for block in observed_run.motion_blocks(observed_run.states_of(run), motion.events, limits.reference_for(run)):
         measurement.take(block.cut(begin, end))
     return list(measurement.result())
 

@@ -148,11 +148,11 @@ def scene_changes(help_of_set: str) -> Callable[[ClickCommand], ClickCommand]:
         def with_changes(*, changes: tuple[str, ...], meant: tuple[str, ...], **arguments: Any) -> Any:
             return command(changes=SceneChanges(changes, meant), **arguments)
 
-        allowed = allow_implausible('Accept an implausible value of this parameter.', metavar='A.B',
-                                    shell_complete=completion.complete_parameters)
-        return click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help=help_of_set,
-                            shell_complete=completion.complete_parameters)(
-            allowed(with_changes))
+        return _with_options(
+            click.option('--set', 'changes', multiple=True, metavar='A.B=VALUE', help=help_of_set,
+                         shell_complete=completion.complete_parameters),
+            allow_implausible('Accept an implausible value of this parameter.', metavar='A.B',
+                              shell_complete=completion.complete_parameters))(with_changes)
     return decorated
 
 
@@ -177,19 +177,22 @@ def command_line(*words: str, **options: Iterable[object]) -> str:
     return shlex.join(['stickslip', *(words or sys.argv[1:]), *given])
 
 
+def _with_options(*options: Callable[[ClickCommand], ClickCommand]) -> Callable[[ClickCommand], ClickCommand]:
+    """Return what gives a command options, as if they stood above it in this order."""
+    return lambda command: functools.reduce(lambda decorated, option: option(decorated), reversed(options), command)
+
+
 # What a verb with a controller of the user has.
 
 def controller_options(help_of_gain: str) -> Callable[[ClickCommand], ClickCommand]:
     """Give a command the argument `controller` and the options `scene`, `rate` and `gains`."""
-    options = (
+    return _with_options(
         click.argument('controller', metavar='FILE.py:NAME'),
         click.option('--scene', required=True, metavar='SCENE', shell_complete=completion.complete_scenes,
                      help='Axis and its rig: a shipped scene or a file.'),
         click.option('--rate', type=float, metavar='HZ', help='Controller rate: time.rate divided by a whole number '
                                                               '[default: time.rate].'),
-        click.option('--gain', 'gains', multiple=True, metavar='NAME=VALUE', help=help_of_gain),
-    )
-    return lambda command: functools.reduce(lambda decorated, option: option(decorated), reversed(options), command)
+        click.option('--gain', 'gains', multiple=True, metavar='NAME=VALUE', help=help_of_gain))
 
 
 # The options of every verb that runs a study.
@@ -209,10 +212,7 @@ _OPTIONS = (
 
 def study_options(command: ClickCommand) -> ClickCommand:
     """Give a command the options of every study; it takes those of its workers as one argument `members`."""
-    decorated = worker_options(scene_changes('Change a parameter of the scene.')(command))
-    for option in reversed(_OPTIONS):
-        decorated = option(decorated)
-    return decorated
+    return _with_options(*_OPTIONS, worker_options, scene_changes('Change a parameter of the scene.'))(command)
 
 
 def worker_options(command: ClickCommand) -> ClickCommand:
@@ -221,10 +221,7 @@ def worker_options(command: ClickCommand) -> ClickCommand:
     def with_members(*, workers: str | None, scheduler: str | None, **arguments: Any) -> Any:
         return command(members=_members(workers, scheduler), **arguments)
 
-    decorated: ClickCommand = with_members
-    for option in reversed(_OF_WORKERS):
-        decorated = option(decorated)
-    return decorated
+    return _with_options(*_OF_WORKERS)(with_members)
 
 
 def _members(workers: str | None, scheduler: str | None) -> Members:

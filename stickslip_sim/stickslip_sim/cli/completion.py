@@ -3,8 +3,9 @@
 """What a shell completes: verbs and options by click, and here scenes, runs and parameters."""
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
+from keyword import iskeyword
 from typing import Any
 
 import click
@@ -45,12 +46,12 @@ def _those(words: Iterable[str], begin: str) -> list[CompletionItem]:
 # Verbs by sections: `stickslip --help` lists them by what a reader wants to do.
 
 class LazyGroup(click.Group):
-    """A group whose commands are imported when they are asked for: by section and name, `FILE.FUNCTION` beside this."""
+    """A group whose commands, by section, are imported when they are asked for, each from its file beside this."""
 
-    def __init__(self, *arguments: Any, sections: Mapping[str, Mapping[str, str]], **options: Any) -> None:
+    def __init__(self, *arguments: Any, sections: Mapping[str, Sequence[str]], **options: Any) -> None:
         super().__init__(*arguments, **options)
         self._sections = sections
-        self._places = {name: place for verbs in sections.values() for name, place in verbs.items()}
+        self._names = sorted(name for verbs in sections.values() for name in verbs)
 
     @property
     def sections(self) -> dict[str, list[click.Command]]:
@@ -59,16 +60,16 @@ class LazyGroup(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names of all verbs."""
-        return sorted(self._places)
+        return self._names
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """Return a verb; None when there is none of that name."""
-        return self._imported(cmd_name) if cmd_name in self._places else None
+        return self._imported(cmd_name) if cmd_name in self._names else None
 
     def _imported(self, name: str) -> click.Command:
-        file, _, function = self._places[name].partition('.')
-        command: click.Command = getattr(import_module(f'.{file}', __package__), function)
-        return command
+        file = name.replace('-', '_') + ('_' if iskeyword(name) else '')
+        found = vars(import_module(f'.{file}', __package__)).values()
+        return next(one for one in found if isinstance(one, click.Command) and one.name == name)
 
     def resolve_command(self, ctx: click.Context, args: list[str]
                         ) -> tuple[str | None, click.Command | None, list[str]]:
@@ -87,11 +88,11 @@ class LazyGroup(click.Group):
             return f'it is a scene; give a verb first, as in stickslip simulate {word} --duration 10.'
         if os.path.exists(word):
             return f'it is a path; give a verb first, as in stickslip plot {word}.'
-        return suggestion(word, self._places, 'the verbs are ' + ', '.join(sorted(self._places)) + '.')
+        return suggestion(word, self._names, 'the verbs are ' + ', '.join(self._names) + '.')
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the sections, their columns below each other."""
-        width = max(map(len, self._places))
+        width = max(map(len, self._names))
         for title, commands in self.sections.items():
             with formatter.section(title):
                 formatter.write_dl([(f'{command.name:{width}}', command.get_short_help_str(limit=100))

@@ -19,20 +19,13 @@ from ..core.version import __version__
 from . import process
 from .completion import LazyGroup, complete_for_shell
 
-_SECTIONS = {   # each verb by what a reader wants, as in the help: its function, by its file
-    'Run': {'scenes': 'scenes.scenes', 'simulate': 'simulate.simulate',
-            'close-loop': 'close_loop.close_loop', 'tune': 'tune.tune', 'import': 'import_.import_',
-            'call': 'call.call'},
-    'Look': {'explore': 'explore.explore', 'plot': 'plot.plot', 'compare': 'compare.compare',
-             'export': 'export.export', 'export-c': 'export_c.export_c',
-             'export-fmu': 'export_fmu.export_fmu',
-             'export-hal': 'export_hal.export_hal'},
-    'Check': {'check': 'check.check', 'verify': 'verify.verify'},
-    'Study': {'critical': 'critical.critical', 'sweep': 'sweep.sweep', 'map': 'map.map_',
-              'uncertainty': 'uncertainty.uncertainty'},
-    'Identify': {'friction': 'friction.friction', 'identify': 'identify.identify',
-                 'predict': 'predict.predict', 'design': 'design.design'},
-    'Measure the engine': {'advise': 'advise.advise', 'bench': 'bench.bench', 'extremes': 'extremes.extremes'},
+_SECTIONS = {   # each verb by what a reader wants, as in the help; its file has its name
+    'Run': ('scenes', 'simulate', 'close-loop', 'tune', 'import', 'call'),
+    'Look': ('explore', 'plot', 'compare', 'export', 'export-c', 'export-fmu', 'export-hal'),
+    'Check': ('check', 'verify'),
+    'Study': ('critical', 'sweep', 'map', 'uncertainty'),
+    'Identify': ('friction', 'identify', 'predict', 'design'),
+    'Measure the engine': ('advise', 'bench', 'extremes'),
 }
 _INTERRUPTED = 130
 

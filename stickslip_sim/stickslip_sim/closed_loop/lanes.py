@@ -25,7 +25,7 @@ from ..scene import Scene
 from ..simulation.random_stream import Stream, stream
 from ..simulation.solved_axis import events_in
 from ..solvers import exact
-from .loop import ClosedLoopRun, as_setpoints
+from .loop import ClosedLoopRun, as_setpoints, setpoint_columns
 
 if TYPE_CHECKING:
     from .study import Attempt, LoopStudy
@@ -208,12 +208,10 @@ class _Lanes:
         columns = columns_of_rows(self._history[i])
         time = columns['time']
         begin = float(time[-1])
-        setpoint = {} if study.setpoint is None else {'time': time, 'position': study.setpoint[:, 0],
-                                                      'velocity': study.setpoint[:, 1]}
         orders = Orders([(1, float(self._velocities[i]), None)], [], [])
         return study.judged(ClosedLoopRun(
             scene, begin, None, events, HeldSamples(columns), summary(events, begin, self._starts[i]), {},
-            setpoint=setpoint, orders=orders))
+            setpoint=setpoint_columns(time, study.setpoint), orders=orders))
 
 
 def _one_of_each(name: str, value: Any, count: int) -> Numbers:

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -372,13 +372,8 @@ class LinearLoop:
         borders = sorted(-1.0 / one.value.real for one in self.phase_crossings)
         edges = [0.0, *borders, math.inf]
         inner = [(low, high) for low, high in pairwise(edges) if high > low * (1.0 + 1e-9)]
-        stable = [(low, high) for low, high in inner if self.is_stable(_between(low, high))]
-        merged: list[tuple[float, float]] = []
-        for low, high in stable:
-            if merged and merged[-1][1] == low:
-                merged[-1] = merged[-1][0], high
-            else:
-                merged.append((low, high))
+        merged = [(stretch[0][0], stretch[-1][1]) for is_stable, stretches in groupby(
+            inner, lambda ends: self.is_stable(_between(*ends))) if is_stable and (stretch := list(stretches))]
         return min(merged, key=lambda one: 0.0 if one[0] <= 1.0 <= one[1] else min(
             abs(math.log(edge)) for edge in one if 0.0 < edge < math.inf), default=(math.nan, math.nan))
 

@@ -82,11 +82,9 @@ class ClosedLoopRun(SimulatedRun):
         receipt['controller'] = {'name': controller, 'rate': scene.time.rate / every}
         receipt['commands'] = {'received': len(record.commands), **{
             name: getattr(rig.counts, name) for name in ('refused', 'lost', 'limited', 'timed_out')}}
-        setpoint = {} if wanted is None else {'time': time, 'position': wanted[:len(time), 0],
-                                              'velocity': wanted[:len(time), 1]}
         orders = Orders(record.commands, record.events, record.rig_events)
         return cls(scene, end, None, events, HeldSamples({**columns, **normal_force_of(scene, time)}), figures, receipt,
-                   setpoint=setpoint, orders=orders, controller=controller, told=record.measured)
+                   setpoint=setpoint_columns(time, wanted), orders=orders, controller=controller, told=record.measured)
 
     @property
     def source(self) -> str:
@@ -207,6 +205,12 @@ def _interpolated(times: Numbers, positions: Numbers, wanted: Numbers) -> Number
 
 def _table(path: Path) -> CsvTable:
     return CsvTable('setpoint', path, [column_of(path, *names, 'setpoint') for names in _NAMES], MOST_POINTS)
+
+
+def setpoint_columns(times: Numbers, setpoint: Numbers | None) -> Columns:
+    """Return the setpoint of a run, with a row a step, as its columns at these times (s)."""
+    return {} if setpoint is None else {'time': times, 'position': setpoint[:len(times), 0],
+                                        'velocity': setpoint[:len(times), 1]}
 
 
 def as_setpoints(columns: Numbers | None, count: int) -> Iterator[Setpoint | None]:

@@ -4,14 +4,10 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from string import ascii_lowercase
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.transforms import ScaledTranslation
 
 from ..core.arrays import Numbers
@@ -58,8 +54,7 @@ _BESIDE = _BAR / 2 / 72   # in
 
 def plot_characteristics(sides: Sequence[Characteristics], *paths: Path | str) -> None:
     """Draw kinetic and static friction beside each other: of both directions, or forwards and backwards."""
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.DOUBLE_COLUMN, 2.7), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+    with style.journal(style.DOUBLE_COLUMN, 2.7, *paths, pads=(0.06, 0.06)) as figure:
         kinetic, static = figure.subplots(1, 2, sharey=True)
         looks = _EACH if len(sides) > 1 else (_BOTH,)
         for friction, look in zip(sides, looks):
@@ -74,7 +69,6 @@ def plot_characteristics(sides: Sequence[Characteristics], *paths: Path | str) -
             lines = style.lines_by_label(panel)
             panel.legend(lines.values(), lines)
             style.letter(panel, name)
-        style.save(figure, *paths)
 
 
 def _kinetic(panel: Axes, friction: Characteristics, look: _Look) -> None:
@@ -161,19 +155,15 @@ class KnownFriction(NamedTuple):
 
 def plot_known_friction(directions: Mapping[str, KnownFriction], path: Path | str) -> None:
     """Draw kinetic friction over speed and static friction over the time at rest, a row for each direction by name."""
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.DOUBLE_COLUMN, _HEIGHT + _ROW * (len(directions) - 1)),
-                        layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.05))
+    with style.journal(style.DOUBLE_COLUMN, _HEIGHT + _ROW * (len(directions) - 1), path, pads=(0.06, 0.05)) as figure:
         panels = figure.subplots(len(directions), 2, squeeze=False, sharey=True, width_ratios=(3, 2))
         for (kinetic, static), (name, friction) in zip(panels, directions.items()):
             _kinetic_found(kinetic, friction)
             _static_found(static, friction)
             kinetic.set_title(name, fontsize=8.0, loc='left')
         panels[0, 0].set_ylim(0.0, max(map(_top, directions.values())))
-        for panel, name in zip(panels.flat, ascii_lowercase):
-            style.letter(panel, name)
+        style.letters(panels.flat)
         style.legend_of(figure, 'upper center', panels[0, 1], panels[0, 0], ncols=4)
-        style.save(figure, path)
 
 
 def _top(friction: KnownFriction) -> float:

@@ -7,10 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter
 from numpy.typing import NDArray
 
@@ -57,8 +54,7 @@ def plot_speeds(points: MeasuredPoints) -> Numbers:
 def plot_friction_fits(points: MeasuredPoints, lines: Sequence[FittedLine], heading: str, path: Path | str) -> None:
     """Draw points and lines, the first of them as the best, above the residuals; left over the speed, right its log."""
     speeds = plot_speeds(points)
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.DOUBLE_COLUMN, _HEIGHT), layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+    with style.journal(style.DOUBLE_COLUMN, _HEIGHT, path) as figure:
         panels = figure.subplots(2, 2, sharey='row', sharex='col', height_ratios=(2.2, 1.0))
         for column, log in enumerate((False, True)):
             _curves(panels[0, column], points, speeds, lines, log)
@@ -66,7 +62,6 @@ def plot_friction_fits(points: MeasuredPoints, lines: Sequence[FittedLine], head
         _axes(panels, points)
         panels[0, 0].set_title(heading, loc='left', fontsize=8.0)
         style.legend_of(figure, 'upper center', panels[0, 0], ncols=4)
-        style.save(figure, path)
 
 
 def _curves(panel: Axes, points: MeasuredPoints, speeds: Numbers, lines: Sequence[FittedLine], log: bool) -> None:

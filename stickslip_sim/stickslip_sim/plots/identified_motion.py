@@ -6,18 +6,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
-from string import ascii_lowercase
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
 from ..figures.catalogue import in_words
-from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, ORANGE, RED, labelled, legend_of, letter, save, thinned
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, ORANGE, RED, journal, labelled, legend_of, letters, thinned
 
 _ROW = 1.7        # in
 _LEGEND = 0.5     # in
@@ -52,14 +48,13 @@ def plot_fit(channels: Sequence[FittedChannel], window: tuple[float, float], res
 
     At its `restarts` (s) the fitted motion begins anew from a measured arrest: there it has a gap and a mark.
     """
-    with _figure(len(channels), share=False) as (figure, rows):
+    with _rows(len(channels), False, ('time / s', 'time / s'), path) as rows:
         for panels, channel in zip(rows, channels):
             _motion(panels[0], channel, (channel.times[0], channel.times[-1]), restarts)
             _motion(panels[1], channel, window, restarts)
             unit = _SCALES.get(channel.unit, (1.0, channel.unit))[1]
             panels[0].set_ylabel(labelled(in_words(channel.name), unit))
             panels[0].axvspan(*window, color=GREY, alpha=0.15, linewidth=0.0)
-        _finish(figure, rows, ('time / s', 'time / s'), path)
 
 
 def plot_residuals(channels: Sequence[FittedChannel], slip_share: float, path: Path | str) -> None:
@@ -67,11 +62,10 @@ def plot_residuals(channels: Sequence[FittedChannel], slip_share: float, path: P
 
     `slip_share` is the share of a cycle after which its slip has ended.
     """
-    with _figure(len(channels), share=True) as (figure, rows):
+    with _rows(len(channels), True, ('time / s', 'phase of the cycle'), path) as rows:
         for panels, channel in zip(rows, channels):
             _over_time(panels[0], channel)
             _over_phase(panels[1], channel, slip_share)
-        _finish(figure, rows, ('time / s', 'phase of the cycle'), path)
 
 
 class PredictedChannel(NamedTuple):
@@ -86,7 +80,7 @@ class PredictedChannel(NamedTuple):
 
 def plot_prediction(channels: Sequence[PredictedChannel], path: Path | str) -> None:
     """Draw a row for each channel: measured and predicted over the whole run, and measured less predicted."""
-    with _figure(len(channels), share=False) as (figure, rows):
+    with _rows(len(channels), False, ('time / s', 'time / s'), path) as rows:
         for (motion, left), channel in zip(rows, channels):
             scale, unit = _SCALES.get(channel.unit, (1.0, channel.unit))
             measured, predicted = scale * channel.measured, scale * channel.predicted
@@ -97,28 +91,19 @@ def plot_prediction(channels: Sequence[PredictedChannel], path: Path | str) -> N
                       label='measured less predicted')
             motion.set_ylabel(labelled(in_words(channel.name), unit))
             left.set_ylabel(labelled('residual', unit))
-        _finish(figure, rows, ('time / s', 'time / s'), path)
 
 
 @contextmanager
-def _figure(count: int, share: bool) -> Iterator[tuple[Figure, Sequence[Sequence[Axes]]]]:
-    """Yield a figure with two panels for each channel, which `share` the upright axis or not."""
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, _ROW * count + _LEGEND),
-                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
-        panels = figure.subplots(count, 2, squeeze=False, sharex='col', sharey='row' if share else 'none',
-                                 width_ratios=(3, 2))
-        yield figure, panels.tolist()
-
-
-def _finish(figure: Figure, rows: Sequence[Sequence[Axes]], labels: Sequence[str], path: Path | str) -> None:
-    for panel, label in zip(rows[-1], labels):
-        panel.set_xlabel(label)
-    panels = [panel for row in rows for panel in row]
-    for panel, name in zip(panels, ascii_lowercase):
-        letter(panel, name)
-    legend_of(figure, 'upper center', *panels, ncols=4)
-    save(figure, path)
+def _rows(count: int, share: bool, labels: Sequence[str], path: Path | str) -> Iterator[Sequence[Sequence[Axes]]]:
+    """Yield two panels for each channel, which `share` the upright axis or not; then finish the figure."""
+    with journal(DOUBLE_COLUMN, _ROW * count + _LEGEND, path) as figure:
+        grid = figure.subplots(count, 2, squeeze=False, sharex='col', sharey='row' if share else 'none',
+                               width_ratios=(3, 2))
+        yield grid.tolist()
+        for panel, label in zip(grid[-1], labels):
+            panel.set_xlabel(label)
+        letters(grid.flat)
+        legend_of(figure, 'upper center', *grid.flat, ncols=4)
 
 
 def _motion(panel: Axes, channel: FittedChannel, window: tuple[float, float], restarts: Sequence[float]) -> None:
@@ -196,15 +181,14 @@ def _lines(panel: Axes) -> None:
 # How the errors of numbers that were found together go together: a matrix of correlations.
 
 _CELL, _MARGIN, _NAMES = 0.42, 0.5, 2.4   # in
+_BARE: dict[str, Any] = {'axes.grid': False, 'axes.spines.left': False, 'axes.spines.bottom': False}
 _DARK = 0.6                               # of a colour: white numbers above it
 
 
 def plot_correlations(names: Sequence[str], matrix: Numbers, path: Path | str) -> None:
     """Draw correlations (k, k) by colour, with their numbers; what is NaN is not determined."""
     count = len(names)
-    with rc_context({**JOURNAL, 'axes.grid': False, 'axes.spines.left': False, 'axes.spines.bottom': False}):
-        figure = Figure(figsize=(_NAMES + _MARGIN + _CELL * count, _NAMES / 2 + _CELL * count),
-                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+    with journal(_NAMES + _MARGIN + _CELL * count, _NAMES / 2 + _CELL * count, path, **_BARE) as figure:
         panel = figure.subplots()
         panel.imshow(matrix, cmap='RdBu_r', vmin=-1.0, vmax=1.0, aspect='equal')
         for i in range(count):
@@ -216,4 +200,3 @@ def plot_correlations(names: Sequence[str], matrix: Numbers, path: Path | str) -
         panel.set_yticks(range(count), names)
         panel.set_xticks(range(count), names, rotation=45, ha='right', rotation_mode='anchor')
         panel.tick_params(length=0.0)
-        save(figure, path)

@@ -8,7 +8,6 @@ from textwrap import fill
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -42,8 +41,7 @@ def plot_over_measured(runs: Mapping[str, DrawnOver], time: str, *paths: Path | 
                                              if run.is_measured)]
     scale, unit = style.force_unit(*(columns[name] for columns in shown.values() for name in known))
     colours = iter(_COLOURS * len(runs))
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.DOUBLE_COLUMN, 5.6), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+    with style.journal(style.DOUBLE_COLUMN, 5.6, *paths, pads=(0.06, 0.06)) as figure:
         panels = list(figure.subplots(2, 2).flat)
         for name, run in sorted(runs.items(), key=lambda item: not item[1].is_measured):
             look = (style.BLACK, 2.6, 0.4) if run.is_measured else (next(colours), 1.0, 1.0)
@@ -53,8 +51,7 @@ def plot_over_measured(runs: Mapping[str, DrawnOver], time: str, *paths: Path | 
             panel.set_xlabel('velocity / (mm/s)' if panel is panels[3] else time)
             if not panel.has_data():
                 panel.text(0.5, 0.5, 'not measured', transform=panel.transAxes, ha='center', va='center')
-        for panel, name in zip(panels, 'abcd'):
-            style.letter(panel, name)
+        style.letters(panels)
         if len(known) > 1:
             panels[0].set_title('solid: drive force, dashed: friction force', fontsize=7.0, loc='right')
         elif known:
@@ -62,7 +59,6 @@ def plot_over_measured(runs: Mapping[str, DrawnOver], time: str, *paths: Path | 
         if known:
             panels[3].set_title(_FORCES[known[-1]], fontsize=7.0, loc='right')
         legend_below(figure, panels[1])
-        style.save(figure, *paths)
 
 
 def _named(name: str, run: DrawnOver) -> str:

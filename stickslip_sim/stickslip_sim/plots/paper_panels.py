@@ -5,14 +5,11 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
-from string import ascii_lowercase
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
 from ..core.types import Mode
@@ -55,8 +52,7 @@ class DrawnMotion(NamedTuple):
 
 def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
     """Draw forces (a), velocity and acceleration (d) over time; (b), (e) the same magnified; the loops (c), (f)."""
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.DOUBLE_COLUMN, 7.8), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+    with style.journal(style.DOUBLE_COLUMN, 7.8, *paths, pads=(0.06, 0.06)) as figure:
         panels = list(figure.subplots(3, 2).flat)
         opening, slip = part(motion.columns, *motion.opening), part(motion.columns, *motion.slip)
         label = 'time / s'
@@ -70,10 +66,8 @@ def plot_motion(motion: DrawnMotion, *paths: Path | str) -> None:
         friction_loop(panels[4], motion)
         _drive_force_loop(panels[4], motion)
         phase_plane(panels[5], motion)
-        for panel, name in zip(panels, _LETTERS):
-            style.letter(panel, name)
+        style.letters(panels, _LETTERS)
         legend_below(figure, panels[4])
-        style.save(figure, *paths)
 
 
 def legend_below(figure: Figure, *panels: Axes) -> None:
@@ -210,9 +204,7 @@ ALIKE = 5.0               # so many times as large an extent, and rows do not sh
 
 def plot_side_by_side(motions: Mapping[str, DrawnMotion], *paths: Path | str) -> None:
     """Draw a row for each run, by its name; runs that are alike have the same axes."""
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.DOUBLE_COLUMN, _ROW * len(motions) + _LEGEND),
-                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+    with style.journal(style.DOUBLE_COLUMN, _ROW * len(motions) + _LEGEND, *paths) as figure:
         grid = figure.subplots(len(motions), 3, squeeze=False)
         lengths = _lengths(list(motions.values()))
         for row, (name, motion), length in zip(grid, motions.items(), lengths):
@@ -222,10 +214,8 @@ def plot_side_by_side(motions: Mapping[str, DrawnMotion], *paths: Path | str) ->
             _share(column, 'y')
         for panel in grid[:-1].flat:
             panel.set_xlabel('')
-        for panel, name in zip(grid.flat, ascii_lowercase):
-            style.letter(panel, name)
+        style.letters(grid.flat)
         legend_below(figure, grid[0, 0], *grid[:, 2])
-        style.save(figure, *paths)
 
 
 def _lengths(motions: Sequence[DrawnMotion]) -> list[float]:

@@ -6,10 +6,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.figure import SubFigure
 
 from ..core.arrays import Numbers
 from . import style
@@ -36,13 +34,10 @@ def plot_experiment(run: ProposedRun, changes: Mapping[str, Numbers], kinds: Seq
     (kinds, parameters), as shares.
     """
     heights = [_OVER_TIME, _ROW * len(kinds) + _MARGIN]
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.DOUBLE_COLUMN, sum(heights)),
-                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.04))
+    with style.journal(style.DOUBLE_COLUMN, sum(heights), *paths, pads=(0.05, 0.04)) as figure:
         upper, lower = figure.subfigures(2, 1, height_ratios=heights)
         _over_time(upper, run, changes)
         _left(lower, list(changes), kinds, deviations, known)
-        style.save(figure, *paths)
 
 
 def _over_time(part: SubFigure, run: ProposedRun, changes: Mapping[str, Numbers]) -> None:

@@ -8,12 +8,9 @@ from string import ascii_uppercase
 from typing import Any, NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, LogNorm, Normalize
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.patheffects import Normal, Stroke
@@ -66,16 +63,13 @@ def plot_stability(scales: tuple[style.Scale, style.Scale, style.Scale], field: 
                    lines: Lines | None, picks: Sequence[Pick],
                    path: Path | str) -> None:
     """Draw a map over x and y (`scales`: x, y and the figure in colours), SI units, and the phase planes of picks."""
-    with rc_context(style.JOURNAL):
-        rows = -(-len(picks) // 2)
-        width = style.DOUBLE_COLUMN if picks else style.SINGLE_COLUMN + 1.0
-        figure = Figure(figsize=(width, max(_HEIGHT, _PORTRAIT_HEIGHT * rows + 0.4)),
-                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+    rows = -(-len(picks) // 2)
+    width = style.DOUBLE_COLUMN if picks else style.SINGLE_COLUMN + 1.0
+    with style.journal(width, max(_HEIGHT, _PORTRAIT_HEIGHT * rows + 0.4), path) as figure:
         left, *right = figure.subfigures(1, 2, width_ratios=(1.15, 1.0)) if picks else (figure,)
         _map(left.subplots(), scales, field, lines, picks)
         if picks:
             _portraits(right[0].subplots(rows, 2, squeeze=False).ravel().tolist(), picks)
-        style.save(figure, path)
 
 
 def _map(panel: Axes, scales: tuple[style.Scale, style.Scale, style.Scale], field: Field, lines: Lines | None,
@@ -161,8 +155,7 @@ def plot_bifurcation(over: style.Scale, cycles: Numbers, sliding: Numbers, path:
     Rows of `cycles`: value, drive force at break-away and at arrest, jump; of `sliding`: value, drive force, 1 where
     it is stable.
     """
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.DOUBLE_COLUMN, 2.9), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06))
+    with style.journal(style.DOUBLE_COLUMN, 2.9, path, pads=(0.06, 0.06)) as figure:
         force, jump = figure.subplots(1, 2, sharex=True)
         _forces(force, over, cycles, sliding)
         jump.plot(over.shown(cycles[:, 0]), cycles[:, 3] * style.MILLI, color=style.GREEN, **_DOT)
@@ -172,7 +165,6 @@ def plot_bifurcation(over: style.Scale, cycles: Numbers, sliding: Numbers, path:
             panel.set_ylim(bottom=min(0.0, panel.get_ylim()[0]))
             style.letter(panel, name)
         style.legend_of(figure, 'upper left', force, ncols=4, markerscale=2.5)
-        style.save(figure, path)
 
 
 def _forces(panel: Axes, over: style.Scale, cycles: Numbers, sliding: Numbers) -> None:
@@ -199,9 +191,7 @@ def plot_pass_map(scales: tuple[style.Scale, style.Scale], x: Numbers, y: Number
                   kinds: Sequence[str], title: str, path: Path | str) -> None:
     """Draw points (SI units) over x and y, each with its outcome; `kinds` are all outcomes in their order."""
     found = np.array(outcomes)
-    with rc_context(style.JOURNAL):
-        figure = Figure(figsize=(style.SINGLE_COLUMN + 1.0, _PASS_HEIGHT),
-                        layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+    with style.journal(style.SINGLE_COLUMN + 1.0, _PASS_HEIGHT, path) as figure:
         panel = figure.subplots()
         size = _LARGE if len(x) <= _MANY else _SMALL
         for kind, (colour, marker) in zip(kinds, _LOOKS):
@@ -212,4 +202,3 @@ def plot_pass_map(scales: tuple[style.Scale, style.Scale], x: Numbers, y: Number
         panel.set(xlabel=scales[0].label, ylabel=scales[1].label, xscale=scales[0].kind, yscale=scales[1].kind)
         panel.set_title(title, loc='left', fontsize=8.0, color=style.GREY)
         style.legend_of(figure, 'upper left', panel, ncols=2)
-        style.save(figure, path)

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """How all pictures look: colours, lines, files.  Without matplotlib's global state, so that no display is needed."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
+from string import ascii_lowercase
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +14,7 @@ from matplotlib import rc_context
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ..core.arrays import Numbers
 from ..core.types import Mode
@@ -55,6 +58,19 @@ def save(figure: Figure, *paths: Path | str) -> None:
         with rc_context(_SAVED):
             figure.savefig(path, format=kind, metadata=_UNDATED.get(kind))
             figure.set_layout_engine(None)   # unlike 'none' it spares the next one a drawing for a layout
+
+
+@contextmanager
+def journal(width: float, height: float, *paths: Path | str, pads: tuple[float, float] = (0.05, 0.05),
+            **settings: Any) -> Iterator[Figure]:
+    """Yield a figure for print, of that size (in) and with these paddings between panels, and write it at the end.
+
+    `settings` are those of matplotlib in place of JOURNAL's.
+    """
+    with rc_context({**JOURNAL, **settings}):
+        figure = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(w_pad=pads[0], h_pad=pads[1]))
+        yield figure
+        save(figure, *paths)
 
 
 def thinned(time: Numbers, values: Numbers) -> tuple[Numbers, Numbers]:
@@ -104,6 +120,12 @@ def letter(panel: Axes, text: str) -> None:
     """Name a panel in its upper left corner, outside."""
     panel.annotate(f'({text})', (0.0, 1.0), xytext=(-26.0, 5.0), xycoords='axes fraction',
                    textcoords='offset points', fontweight='bold', fontsize=8.5)
+
+
+def letters(panels: Iterable[Axes], names: Iterable[str] = ascii_lowercase) -> None:
+    """Name panels in their order."""
+    for panel, name in zip(panels, names):
+        letter(panel, name)
 
 
 # A panel over time: its lines, its look, the title above.

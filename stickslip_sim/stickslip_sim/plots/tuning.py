@@ -8,14 +8,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import NDArray
 
 from ..core.arrays import Flags, Numbers
-from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, RED, SKY, legend_of, letter, save, shortened, thinned
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, RED, SKY, journal, legend_of, letters, shortened, thinned
 
 _COLOURS = {'stick': BLUE, 'slip': RED}
 _LOOKS = {'stick': (0, (5.0, 2.0)), 'slip': 'solid'}
@@ -41,8 +38,7 @@ def plot_tuning(loops: Mapping[str, BodeLines], error: tuple[Numbers, Numbers, F
 
     The error is drawn once more `closer`, from one time to another (s).
     """
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, _HEIGHT), layout=ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.05))
+    with journal(DOUBLE_COLUMN, _HEIGHT, path, pads=(0.06, 0.05)) as figure:
         (gain, step), (phase, swing), (plant, late) = figure.subplots(3, 2)
         for mode, lines in loops.items():
             lines = _readable(lines)
@@ -70,11 +66,9 @@ def plot_tuning(loops: Mapping[str, BodeLines], error: tuple[Numbers, Numbers, F
                 panel.set(xticks=[], yticks=[])
             elif level is not None:
                 panel.axhline(level, color=GREY, linewidth=0.8)
-        for name, panel in zip('abcdef', (gain, phase, plant, step, swing, late)):
-            letter(panel, name)
+        letters((gain, phase, plant, step, swing, late))
         legend_of(figure, 'upper right', gain, swing, ncols=3)
         figure.text(0.01, 0.99, shortened(title, _TITLE), va='top', fontweight='bold', fontsize=9.0)
-        save(figure, path)
 
 
 def _readable(lines: BodeLines) -> BodeLines:

@@ -9,15 +9,13 @@ from textwrap import fill
 from typing import NamedTuple
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure, SubFigure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.figure import SubFigure
 from matplotlib.ticker import MaxNLocator
 
 from ..core.arrays import Numbers
 from ..figures.catalogue import in_words
-from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, JOURNAL, SKY, Scale, legend_of, letter, save
+from .style import BLACK, BLUE, DOUBLE_COLUMN, GREY, SKY, Scale, journal, legend_of, letter
 
 _MOST_BINS = 30   # a square root of the points, where that is less
 _NARROW = 1e-6   # of its size: a figure that spreads less is drawn as one value, in a range of 1 %
@@ -52,13 +50,11 @@ def plot_uncertainty(spreads: Sequence[Spread], heading: str, parameters: Sequen
     """Draw a histogram of each figure under a `heading`, and below, a column for each, the shares of `parameters`."""
     rows = -(-len(spreads) // min(_COLUMNS, len(spreads)))
     heights = [_ROW * rows + 0.5, *([_BAR * len(parameters) + _MARGIN] if shares else [])]
-    with rc_context(JOURNAL):
-        figure = Figure(figsize=(DOUBLE_COLUMN, sum(heights)), layout=ConstrainedLayoutEngine(w_pad=0.05, h_pad=0.05))
+    with journal(DOUBLE_COLUMN, sum(heights), path) as figure:
         parts = figure.subfigures(len(heights), 1, height_ratios=heights, squeeze=False)[:, 0]
         _spreads(parts[0], spreads, heading)
         if shares:
             _shares(parts[1], parameters, shares)
-        save(figure, path)
 
 
 def _spreads(part: SubFigure, spreads: Sequence[Spread], heading: str) -> None:

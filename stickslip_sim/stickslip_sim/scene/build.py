@@ -8,46 +8,18 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from ..axis import Axis, CompliantContact, Friction, InitialState, RigidContact, check_start
+from ..core import input_profile
 from ..core.errors import InputError
-from ..core.input_profile import (
-    InputProfile,
-    Sinusoid,
-    check_first_position,
-    constant,
-    positions,
-    ramp,
-    sinusoids,
-    steps,
-    table,
-)
+from ..core.input_profile import InputProfile, Sinusoid
 from ..core.time_grid import Grid
-from ..friction import (
-    ExcessTable,
-    KineticTable,
-    Scatter,
-    SmoothExcess,
-    SmoothKinetic,
-    StaticLaw,
-    StaticLawKind,
-    excess_table,
-    kinetic_table,
-    smooth,
-)
+from ..friction import ExcessTable, KineticTable, Scatter, StaticLaw, StaticLawKind, excess_table, kinetic_table, smooth
 from ..friction.kinetic import default_excess
 from ..simulation.faults import Faults
 from ..simulation.plant import with_friction_scaled
 from ..simulation.rig import RigSettings
 from ..solvers.normal_load import under_load
-from .model import (
-    CommandSettings,
-    RecordSettings,
-    Scene,
-    SolverSettings,
-    TimingSettings,
-    method_of,
-    rig_settings,
-    time_settings,
-)
+from . import model
+from .model import Scene, SolverSettings
 from .schema import BACKWARD, BY_NAME, FILE_SETTINGS, JOINT_PREFIX, PROFILES, backward_name, forward_name
 from .values import complete_values, section_of
 
@@ -56,10 +28,10 @@ from .values import complete_values, section_of
 _SECTIONS = ('friction.static.', 'friction.kinetic.', 'friction.excess.')
 _INSIDE = f'.{BACKWARD}.'
 
-_KINETIC: dict[str, Callable[..., SmoothKinetic]] = {
+_KINETIC: dict[str, Callable[..., smooth.SmoothKinetic]] = {
     'stribeck': smooth.stribeck, 'exponential': smooth.exponential, 'hyperbolic': smooth.hyperbolic,
 }
-_EXCESS: dict[str, Callable[..., SmoothExcess]] = {'cosine': smooth.cosine, 'power': smooth.power}
+_EXCESS: dict[str, Callable[..., smooth.SmoothExcess]] = {'cosine': smooth.cosine, 'power': smooth.power}
 
 
 def friction_of(values: Mapping[str, Any]) -> Friction:
@@ -134,7 +106,7 @@ def check_scaled_friction(axis: Axis, solver: SolverSettings, rig: RigSettings, 
                              error.fix) from None
 
 
-_BREAKPOINTS: dict[str, Callable[..., InputProfile]] = {'steps': steps, 'table': table}
+_BREAKPOINTS: dict[str, Callable[..., InputProfile]] = {'steps': input_profile.steps, 'table': input_profile.table}
 
 
 class Dynamics(NamedTuple):
@@ -155,15 +127,15 @@ def scene_from_values(values: Mapping[str, Any], summary: str = '') -> Scene:
     _check_read(values)
     values = complete_values(values)
     axis, initial, drive, force, load = dynamics_of(values)
-    if 'solver.method' not in values and (method := method_of(values)):
+    if 'solver.method' not in values and (method := model.method_of(values)):
         values['solver.method'] = method
     solver = SolverSettings(**section_of(values, 'solver'))
     solver.check(axis)
     if load is not None:
         _check_load(axis, solver, load)
-    rig = rig_settings(values)
+    rig = model.rig_settings(values)
     check_scaled_friction(axis, solver, rig, values['time.rate'])
-    time = time_settings(values)
+    time = model.time_settings(values)
     if values.get('record.log_time') == 'wall' and not time.is_wall_time:
         raise InputError('record.log_time', 'wall', 'simulation unless time.mode is realtime and time.factor is 1',
                          'stamps are simulation time here, and so are those of other bags: leave it out')
@@ -176,10 +148,10 @@ def scene_from_values(values: Mapping[str, Any], summary: str = '') -> Scene:
         force=force,
         solver=solver,
         time=time,
-        command=CommandSettings(*(values[f'command.{name}'] for name in ('max_velocity', 'max_force', 'timeout'))),
-        timing=TimingSettings(**section_of(values, 'timing')),
+        command=model.CommandSettings(*(values[f'command.{name}'] for name in model.CommandSettings.__slots__)),
+        timing=model.TimingSettings(**section_of(values, 'timing')),
         rig=rig,
-        record=RecordSettings(**section_of(values, 'record')),
+        record=model.RecordSettings(**section_of(values, 'record')),
         joint_prefix=str(values.get(JOINT_PREFIX.name, '')),
         seed=values['seed'],
         values=values,
@@ -194,7 +166,7 @@ def dynamics_of(values: Mapping[str, Any]) -> Dynamics:
     load = _profile(values, 'normal_load', 'constant', 'rate', 'forces') if 'normal_load.course' in values else None
     check_start(axis, initial, load.value_at(0.0) if load else 0.0)
     if values['drive.course'] == 'position':
-        check_first_position('drive', values['drive.positions'][0], initial.position + initial.stretch)
+        input_profile.check_first_position('drive', values['drive.positions'][0], initial.position + initial.stretch)
     return Dynamics(axis, initial, _profile(values, 'drive', 'velocity', 'acceleration', 'velocities'),
                     _profile(values, 'force', 'constant', 'rate', 'forces'), load)
 
@@ -218,8 +190,8 @@ def _check_load(axis: Axis, solver: SolverSettings, load: InputProfile) -> None:
 
 def _axis(values: Mapping[str, Any]) -> Axis:
     contact = section_of(values, 'contact')
-    model, arrest, ends_by = (contact.pop(name, None) for name in ('model', 'arrest', 'break_away'))
-    compliant = model == 'compliant' and CompliantContact(**contact, undeflected=arrest == 'undeflected',
+    kind, arrest, ends_by = (contact.pop(name, None) for name in ('model', 'arrest', 'break_away'))
+    compliant = kind == 'compliant' and CompliantContact(**contact, undeflected=arrest == 'undeflected',
                                                           ends_by_drive=ends_by == 'drive_force')
     given = section_of(values, 'axis')
     on_slideway = given.pop('damper', None) == 'slideway'
@@ -237,12 +209,13 @@ def _profile(values: Mapping[str, Any], section: str, value: str, rate: str, bre
 def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, breakpoints: str) -> InputProfile:
     form = given['course']
     if form in ('constant', 'sine'):
-        return constant(given[value])
+        return input_profile.constant(given[value])
     if form == 'ramp':
-        profile = ramp(given[value], given[rate], given['duration'])
+        profile = input_profile.ramp(given[value], given[rate], given['duration'])
         name = f'{section}.{rate}'
     elif form == 'position':
-        return positions(section, given['times'], given['positions'], given.get('slopes'), given['period'])
+        return input_profile.positions(section, given['times'], given['positions'], given.get('slopes'),
+                                       given['period'])
     else:
         profile = _BREAKPOINTS[form](section, given['times'], given[breakpoints], given['period'])
         name = f'{section}.{breakpoints}'
@@ -255,7 +228,7 @@ def _pieces(given: Mapping[str, Any], section: str, value: str, rate: str, break
 def _sinusoids(given: Mapping[str, Any], section: str) -> tuple[Sinusoid, ...]:
     sine = (Sinusoid(given['amplitude'], given['frequency'], given['phase']),) if given['course'] == 'sine' else ()
     if 'amplitudes' in given and 'frequencies' in given:
-        return sine + sinusoids(section, given['amplitudes'], given['frequencies'], given.get('phases'))
+        return sine + input_profile.sinusoids(section, given['amplitudes'], given['frequencies'], given.get('phases'))
     for name in ('amplitudes', 'frequencies', 'phases'):
         if name in given:
             raise InputError(f'{section}.{name}', given[name], 'given with both amplitudes and frequencies',

@@ -95,20 +95,8 @@ FEED = 'drive.velocity'
 _FINE = 300   # values of either parameter
 
 
-class Borders(NamedTuple):
-    """Over `others`, values of the other parameter: the critical feed (m/s) in closed form, NaN where there is none.
-
-    `is_lost` has for each of them (rows) and each of `feeds` 1 where steady sliding is unstable, NaN without any.
-    """
-
-    others: Numbers
-    critical_feed: Numbers
-    feeds: Numbers
-    is_lost: Numbers
-
-
-def borders(study: Study) -> Borders | None:
-    """Return the lines for a study of the feed and one more parameter; None for any other study."""
+def borders(study: Study) -> Lines | None:
+    """Return the lines for a study of the feed and one more parameter, over that; None for any other study."""
     variations = {one.name: one for one in study.ranges}
     feed = variations.pop(FEED, None)
     if feed is None or len(variations) != 1 or not study.works_in_batches:
@@ -119,7 +107,7 @@ def borders(study: Study) -> Borders | None:
     known = [feed_of_theory(axis) for axis in axes]
     critical = np.array([np.nan if value is None else value for value in known], dtype=float)
     slopes = np.array([sliding_slope(axis, {'drive_velocity': feeds}) for axis in axes])
-    return Borders(others, critical, feeds, np.where(np.isnan(slopes), np.nan, slopes < 0.0))
+    return Lines(others, critical, feeds, np.where(np.isnan(slopes), np.nan, slopes < 0.0))
 
 
 def _finely(one: Variation) -> Numbers:
@@ -213,8 +201,7 @@ def draw_map(study: Study, columns: TableColumns, shown: str, picks: Sequence[Pi
     motion = table(columns['motion'])
     values = np.where(motion == Motion.STICK_SLIP, table(columns[shown]), np.nan)
     field = Field(x.grid(), y.grid(), values, _plain(motion, table(columns['settled'])))
-    known = borders(study)
-    lines = Lines(known.others, known.critical_feed, known.feeds, known.is_lost) if known else None
+    lines = borders(study)
     scales = _scale(study, x), _scale(study, y), Scale(shown, unit_read(unit_of(shown), values))
     for path in paths:
         plot_stability(scales, field, lines, picks, path)

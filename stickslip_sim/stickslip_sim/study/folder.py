@@ -17,20 +17,9 @@ from typing import Any, NamedTuple
 from ..core.arrays import Numbers
 from ..core.errors import InputError, paths_beside, suggestion
 from ..core.paths import made_folder
+from . import table
 from .study import Study
-from .table import (
-    TableColumns,
-    Tabled,
-    in_words,
-    longest_line,
-    may_be_table,
-    next_lines,
-    read_rows,
-    stretches,
-    title_line,
-    width,
-    write_parquet,
-)
+from .table import TableColumns, Tabled
 
 LONGEST_SIDECAR = 1 << 24   # bytes of a description; nearly all of it is the scene
 SIDECAR, POINTS_TABLE, PARTIAL, PARQUET = 'study.json', 'points.csv', 'points.partial.csv', 'points.parquet'
@@ -63,7 +52,7 @@ class Folder:
             check_resources(study, temporary)
             (temporary / SIDECAR).write_text(json.dumps(study.described(command), indent=1) + '\n',
                                              encoding='utf-8')
-            (temporary / PARTIAL).write_bytes(title_line(study))
+            (temporary / PARTIAL).write_bytes(table.title_line(study))
             temporary.rename(self.path)
 
     @contextmanager
@@ -107,15 +96,15 @@ class Folder:
 
     def whole_chunks(self, study: Tabled) -> list[Numbers]:
         """Return the rows of each whole chunk of points that is there; the remains of a crash are cut off."""
-        path, titles = self.path / PARTIAL, title_line(study)
+        path, titles = self.path / PARTIAL, table.title_line(study)
         with refusing(path), path.open('r+b') as file:
-            if not may_be_table(path, study) or file.readline(len(titles)) != titles:
+            if not table.may_be_table(path, study) or file.readline(len(titles)) != titles:
                 raise InputError('points', str(path), 'the table of this study', 'it was changed; sweep into a new one')
             chunks, end = [], len(titles)
-            for first, last in stretches(study):
-                found = next_lines(file, study, first, last)
+            for first, last in table.stretches(study):
+                found = table.next_lines(file, study, first, last)
                 try:
-                    chunks.append(read_rows(found, study, first, last))
+                    chunks.append(table.read_rows(found, study, first, last))
                 except ValueError:
                     break
                 end += sum(map(len, found))
@@ -138,7 +127,7 @@ class Folder:
         """Give the table its name; where pandas is installed, write its `columns` as Parquet too."""
         with refusing(self.path):
             worded = study.figure_names[0]
-            write_parquet(columns | {worded: in_words(study, columns[worded])}, self.path / PARQUET)
+            table.write_parquet(columns | {worded: table.in_words(study, columns[worded])}, self.path / PARQUET)
             (self.path / PARTIAL).replace(self.table)
 
 
@@ -222,8 +211,8 @@ _OF_A_WORKER = 50_000_000   # bytes: Python, numpy and the compiled engine, each
 def check_resources(study: Tabled, folder: Path) -> None:
     """Raise InputError when the table of a study would not fit into memory or onto the disk of a folder."""
     disk = shutil.disk_usage(folder).free
-    for where, of_a_point, free in (('memory', _IN_MEMORY * width(study), free_memory()),
-                                    ('disk', longest_line(study), disk)):
+    for where, of_a_point, free in (('memory', _IN_MEMORY * table.width(study), free_memory()),
+                                    ('disk', table.longest_line(study), disk)):
         if study.count * of_a_point > free:
             raise InputError('points', study.count, f'at most {free // of_a_point}: their table would take '
                              f'{_mega(study.count * of_a_point)} of {where}, of which {_mega(free)} are free',

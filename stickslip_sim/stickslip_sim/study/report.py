@@ -15,17 +15,9 @@ from ..figures.point_figures import MOTIONS, Motion
 from ..report.model import Part, Section, Table, facts
 from ..report.quantity import counted, quantities
 from ..scene import Scene
+from . import critical
 from .answer_changes import NO, YES, Findings, Transition
-from .critical import (
-    ACCURACY,
-    STARTS,
-    Critical,
-    CriticalSpread,
-    CriticalStudy,
-    TableFact,
-    breakpoints_between,
-    feed_of_theory,
-)
+from .critical import ACCURACY, STARTS, Critical, CriticalSpread, CriticalStudy, TableFact
 from .sample import LAWS, Saltelli
 from .study import Study
 from .sweep import Swept
@@ -71,9 +63,9 @@ def critical_report(scene: Scene, found: Critical) -> Iterator[Part]:
             *(('bistable', f'from {low:.6g} to {high:.6g}{unit} both go on: the start decides')
               for low, high in found.both),
             *(('by the table', _decided(fact, unit, digits)) for fact in found.by_table)]
-    if found.by_table and breakpoints_between(scene):
+    if found.by_table and critical.breakpoints_between(scene):
         rows.append(('', 'a smooth law may have another value; stickslip friction fits one to points'))
-    theory = feed_of_theory(scene.axis) if over.name == 'drive.velocity' else None
+    theory = critical.feed_of_theory(scene.axis) if over.name == 'drive.velocity' else None
     if theory is not None:
         rows.append(('closed form', f'{theory:.{digits + 2}g}{unit}, from rest'))
     yield facts(rows, _START)
@@ -142,9 +134,9 @@ def uncertainty_report(study: Study, sample: Saltelli, swept: Swept, found: Unce
     yield from ('', *_indices(study, sample, found.indices), '')
 
 
-def spread_report(critical: CriticalStudy, sample: Saltelli, spreads: Mapping[str, CriticalSpread]) -> Iterator[Part]:
+def spread_report(sought: CriticalStudy, sample: Saltelli, spreads: Mapping[str, CriticalSpread]) -> Iterator[Part]:
     """Yield the distributions, percentiles of the critical values, and indices."""
-    study, over = critical.study, critical.over
+    study, over = sought.study, sought.over
     yield _size(study, sample)
     yield (f'critical {over.name} from {over.low:g} to {over.high:g}{_unit(over.unit)}, the highest one, '
            f'to {ACCURACY:g} of the value')
@@ -171,9 +163,9 @@ def uncertainty_values(sample: Saltelli, found: Uncertainty) -> dict[str, Any]:
             'indices': found.indices}
 
 
-def spread_values(critical: CriticalStudy, sample: Saltelli, spreads: Mapping[str, CriticalSpread]) -> dict[str, Any]:
+def spread_values(sought: CriticalStudy, sample: Saltelli, spreads: Mapping[str, CriticalSpread]) -> dict[str, Any]:
     """Return all that was found of a critical value."""
-    scene, over = critical.study.scene, critical.over
+    scene, over = sought.study.scene, sought.over
     return {'scene': scene.name, 'scene_hash': scene.hash, 'samples': sample.samples, 'seed': sample.seed,
             'critical': over.name, 'unit': over.unit, 'between': [over.low, over.high], **_kept(sample),
             **{start: {'points': one.points, 'all_over': one.all_over, 'nowhere': one.nowhere, 'unknown': one.unknown,

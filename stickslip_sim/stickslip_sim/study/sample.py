@@ -31,7 +31,7 @@ class Rule(NamedTuple):
 
 
 class Law(NamedTuple):
-    """A family of distributions: the `numbers` that choose one, their conditions, and that one as scipy has it.
+    """A family of distributions: the `numbers` that choose one, their conditions, and that one of scipy.stats.
 
     `ends`: where tails without an end may be cut; None where there are none.
     """
@@ -42,45 +42,25 @@ class Law(NamedTuple):
     ends: Callable[..., tuple[float, float]] | None = None
 
 
-def _normal(mean: float, standard_deviation: float) -> Any:
-    from scipy.stats import norm
-
-    return norm(mean, standard_deviation)
-
-
-def _lognormal(median: float, geometric_standard_deviation: float) -> Any:
-    from scipy.stats import lognorm
-
-    return lognorm(np.log(geometric_standard_deviation), scale=median)
-
-
-def _uniform(low: float, high: float) -> Any:
-    from scipy.stats import uniform
-
-    return uniform(low, high - low)
-
-
-def _triangular(low: float, mode: float, high: float) -> Any:
-    from scipy.stats import triang
-
-    return triang((mode - low) / (high - low), low, high - low)
-
-
 LAWS = {
     'normal': Law(
         ('mean', 'standard_deviation'), (Rule('standard_deviation', '> 0', lambda mean, sd: sd > 0.0),),
-        _normal, lambda mean, sd: (mean - _TAILS * sd, mean + _TAILS * sd)),
+        lambda stats, mean, sd: stats.norm(mean, sd),
+        lambda mean, sd: (mean - _TAILS * sd, mean + _TAILS * sd)),
     'lognormal': Law(
         ('median', 'geometric_standard_deviation'),
         (Rule('median', '> 0', lambda median, sd: median > 0.0),
          Rule('geometric_standard_deviation', '> 1 and <= 1e6: two thirds lie between median / it and median * it',
               lambda median, sd: 1.0 < sd <= _WIDEST)),
-        _lognormal, lambda median, sd: (median / sd**_TAILS, median * sd**_TAILS)),
-    'uniform': Law(('low', 'high'), (Rule('high', 'above low', lambda low, high: low < high),), _uniform),
+        lambda stats, median, sd: stats.lognorm(np.log(sd), scale=median),
+        lambda median, sd: (median / sd**_TAILS, median * sd**_TAILS)),
+    'uniform': Law(('low', 'high'), (Rule('high', 'above low', lambda low, high: low < high),),
+                   lambda stats, low, high: stats.uniform(low, high - low)),
     'triangular': Law(
         ('low', 'mode', 'high'),
         (Rule('high', 'above low', lambda low, mode, high: low < high),
-         Rule('mode', 'from low to high', lambda low, mode, high: low <= mode <= high)), _triangular),
+         Rule('mode', 'from low to high', lambda low, mode, high: low <= mode <= high)),
+        lambda stats, low, mode, high: stats.triang((mode - low) / (high - low), low, high - low)),
 }
 
 
@@ -114,7 +94,9 @@ class Distribution:
 
     @cached_property
     def _frozen(self) -> Any:
-        return LAWS[self.law].frozen(*self.numbers)
+        from scipy import stats
+
+        return LAWS[self.law].frozen(stats, *self.numbers)
 
     @cached_property
     def _shares(self) -> tuple[float, float]:
