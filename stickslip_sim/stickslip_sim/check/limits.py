@@ -10,13 +10,12 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from ..core.errors import InputError, RecordingError, suggestion
 from ..figures.control import MeasuredFigure, Measuring, MotionBlock, MotionSpan, no_sample_in, positions_of_targets
 from ..figures.positioning import PositionFigures
 from ..inputs.csv_table import CsvTable, column_of
 from ..inputs.units import LENGTHS, TIMES
+from ..report.quantity import quantity
 from ..runs import Run
 from ..scene import Parameter
 from ..scene.load import named, read_text
@@ -121,6 +120,12 @@ class Limit:
     def margin(self, value: float) -> float:
         """Return what a value leaves up to the bound; negative beyond it."""
         return value - self.bound if self.kind.is_least else self.bound - value
+
+    @property
+    def bound_text(self) -> str:
+        """The bound for people, as at most so much."""
+        text = quantity(self.bound, self.kind.unit)
+        return f'at least {text}' if self.kind.is_least else text
 
     def is_kept(self, value: Any) -> Any:
         """Return whether values, one or an array of them, are within the bound."""
@@ -313,13 +318,7 @@ def _reference_of_file(given: Mapping[str, object], folder: Path) -> Reference:
     wanted = [column_of(path, [words.get(name, name)], units, f'reference.{name}', words.get(f'{name}_unit'),
                         f'reference.{name}_unit') for name, units in _COLUMNS.items()]
     table = CsvTable('reference.file', path, wanted, MOST_POINTS)
-    times, positions = table.columns
-    late = np.flatnonzero(np.diff(times) <= 0.0)
-    if len(late):
-        row = int(late[0]) + 1
-        table.refuse(row, float(times[row]), f'a time after the one before it, {float(times[row - 1])!r} s',
-                     'sort the rows by time and drop duplicates')
-    return Reference(tuple(times.tolist()), tuple(positions.tolist()))
+    return Reference(*(tuple(column.tolist()) for column in table.columns))
 
 
 def _checked(entry: Parameter, section: str, value: object, name: str = '') -> Any:

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -251,24 +251,6 @@ class Made(NamedTuple):
     sample: Sample
 
 
-class Maker(Protocol):
-    """Makes steps one after the other; `start` is the last one that was made before."""
-
-    start: int
-
-    def make(self, step: RecordedStep) -> Iterator[Made]:
-        """Yield all steps up to a recorded one, which begins with what was ordered before it; raises SolverError."""
-
-
-def maker_of(run: RecordedRun, scene: Scene, fixed: Collection[str] = (), progress: Progress = None) -> Maker:
-    """Return what makes a run again from its scene, or from another whose `fixed` parameters nothing changes.
-
-    A run that begins with a checkpoint takes the axis of the scene alone.  Raises RecordingError and InputError.
-    """
-    offline = offline_of(run)
-    return _OfflineMaker(run, scene, offline, progress) if offline else _NodeMaker(run, scene, fixed)
-
-
 class _NodeMaker:
     """Follows the orders of the recording."""
 
@@ -278,6 +260,7 @@ class _NodeMaker:
         self.start = self._rig.step
 
     def make(self, step: RecordedStep) -> Iterator[Made]:
+        """Yield all steps up to a recorded one, which begins with what was ordered before it; raises SolverError."""
         while self._rig.step + 1 < step.number:
             yield self._made()
         events = [order for order in step.orders if order.type == topics.RIG_EVENT.type][:self._known]
@@ -323,6 +306,7 @@ class _OfflineMaker:
         self._events = deque(_without_knots(again.events))
 
     def make(self, step: RecordedStep) -> Iterator[Made]:
+        """Yield all steps up to a recorded one; raises SolverError."""
         for number, sample in self._samples:
             events = []
             while self._events and self._events[0].instant <= sample.instant:
@@ -331,6 +315,18 @@ class _OfflineMaker:
             if number == step.number:
                 return
         raise RecordingError(f'{self._path}: step {step.number} is beyond the duration of the run')
+
+
+Maker = _NodeMaker | _OfflineMaker   # of steps, one after the other; `start` is the last one that was made before
+
+
+def maker_of(run: RecordedRun, scene: Scene, fixed: Collection[str] = (), progress: Progress = None) -> Maker:
+    """Return what makes a run again from its scene, or from another whose `fixed` parameters nothing changes.
+
+    A run that begins with a checkpoint takes the axis of the scene alone.  Raises RecordingError and InputError.
+    """
+    offline = offline_of(run)
+    return _OfflineMaker(run, scene, offline, progress) if offline else _NodeMaker(run, scene, fixed)
 
 
 def _without_knots(events: Sequence[Event]) -> list[Event]:

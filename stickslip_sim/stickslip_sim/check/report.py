@@ -269,10 +269,8 @@ def _cells(outcome: LimitOutcome) -> tuple[str, ...]:
     verdict = 'PASS' if outcome.passed else 'FAIL'
     if outcome.limit is None or outcome.value is None or outcome.margin is None:
         return outcome.name, '–', '–', '–', verdict, outcome.remark
-    value, bound, margin = (quantity(number, outcome.limit.kind.unit)
-                            for number in (outcome.value, outcome.limit.bound, outcome.margin))
-    most = f'at least {bound}' if outcome.limit.kind.is_least else bound
-    return outcome.name, value, most, margin, verdict, outcome.remark
+    value, margin = (quantity(number, outcome.limit.kind.unit) for number in (outcome.value, outcome.margin))
+    return outcome.name, value, outcome.limit.bound_text, margin, verdict, outcome.remark
 
 
 def matrix(runs: Sequence[Checked]) -> Table:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..core.errors import InputError, VerdictError
-from ..core.paths import check_picture_name, made_folder, nearest_existing
+from ..core.paths import check_picture_name, made_folder, nearest_existing, replacing
 from ..core.types import Progress
 
 if TYPE_CHECKING:
@@ -129,14 +129,10 @@ def whole(path: str) -> Iterator[Path]:
         with _refusing(path):
             yield place
         return
-    temporary = place.with_name(f'.{os.getpid()}.{place.name}')
-    try:
-        with _refusing(path):
-            temporary.parent.mkdir(parents=True, exist_ok=True)
+    with _refusing(path):
+        place.parent.mkdir(parents=True, exist_ok=True)
+        with replacing(place) as temporary:
             yield temporary
-            temporary.replace(place)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def write_text(path: str | None, lines: Iterable[str]) -> None:

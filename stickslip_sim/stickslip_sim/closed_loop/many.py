@@ -4,7 +4,7 @@
 
 import os
 import pickle
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +16,7 @@ import numpy as np
 from ..controllers.own_controller import parse_gain
 from ..core.arrays import Flags, Numbers, data_frame
 from ..core.errors import InputError
-from ..core.paths import check_picture_name
+from ..core.paths import check_picture_name, replacing
 from ..core.types import Progress
 from ..inputs import SceneOrName, scene_of
 from ..report.values import json_text
@@ -153,12 +153,13 @@ class ClosedLoops:
             if not bag.exists() and (run := self.attempt(i).run) is not None:
                 bag.parent.mkdir(exist_ok=True)
                 run.save(bag)
-                _drawn(run.plot, bag.with_name(f'{bag.name}.png'))
+                with replacing(bag.with_name(f'{bag.name}.png')) as picture:
+                    run.plot(picture)
         if len(self.study.names) > 1:
-            _drawn(self.plot, place / MAP)
-        temporary = place / f'.{RESULT}'
-        temporary.write_text(json_text(self.values()), encoding='utf-8')
-        temporary.replace(place / RESULT)
+            with replacing(place / MAP) as picture:
+                self.plot(picture)
+        with replacing(place / RESULT) as temporary:
+            temporary.write_text(json_text(self.values()), encoding='utf-8')
 
 
 def close_loops(controller: Any, scene: SceneOrName, duration: float, over: Mapping[str, Range] | None = None, *,
@@ -285,11 +286,3 @@ def _variation(name: str, given: Range, drawn: bool) -> Variation:
     return variation(f'{name}={given}', drawn, loop_parameter)
 
 
-def _drawn(draw: Callable[[Path], None], path: Path) -> None:
-    """Draw a picture, whole or not at all."""
-    temporary = path.with_name(f'.{path.name}')
-    try:
-        draw(temporary)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)

@@ -89,9 +89,7 @@ def _limits(found: ClosedLoops) -> Iterator[Part]:
     for limit, kept in zip(limits.limits, found.matrix.sum(axis=0).tolist()):
         worst = found.worst.get(limit.name)
         value = '–' if worst is None else quantity(float(found.columns[limit.name][worst]), limit.kind.unit)
-        bound = quantity(limit.bound, limit.kind.unit)
-        rows.append((limit.name, f'{kept} of {found.study.count}',
-                     f'at least {bound}' if limit.kind.is_least else bound, value,
+        rows.append((limit.name, f'{kept} of {found.study.count}', limit.bound_text, value,
                      '–' if worst is None else str(worst)))
     yield Table(('limit', 'kept', 'at most', 'worst', 'at point'), rows)
 

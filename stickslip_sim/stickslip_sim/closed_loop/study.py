@@ -21,6 +21,7 @@ from ..controllers.own_controller import OwnController, made_controller, named_c
 from ..core.arrays import Numbers
 from ..core.errors import ControllerError, InputError, SolverError
 from ..core.time_grid import Instants
+from ..figures.control import errors_to
 from ..scene import Scene, scene_from_values
 from ..scene.parameter import Parameter
 from ..scene.values import overridden
@@ -249,7 +250,8 @@ class LoopStudy:
         last = 0 if positions is None else len(positions) - 1
         figures = [float(attempt.outcome), float(self.times.seconds[last] + self.times.fractions[last])]
         if self.setpoint is not None:
-            figures += [math.nan, math.nan] if positions is None else errors_of(positions, self.setpoint)
+            figures += ([math.nan, math.nan] if positions is None else
+                        errors_to(self.setpoint[:len(positions), 0], positions))
         return figures + [math.nan if (value := found.get(name)) is None else float(value)
                           for name in self.limit_names]
 
@@ -270,12 +272,6 @@ class LoopStudy:
             'limits_digest': '' if self.limits_file is None else _digest(Path(self.limits_file).read_bytes()),
             'versions': versions_of_a_study(), 'scene_text': self.scene.text,
         })
-
-
-def errors_of(positions: Numbers, setpoint: Numbers) -> list[float]:
-    """Return the largest and the RMS distance to the setpoint, m."""
-    error = np.abs(positions - setpoint[:len(positions), 0])
-    return [float(error.max()), math.sqrt(float(np.mean(error * error)))]
 
 
 def repr_of(controller: object) -> str:

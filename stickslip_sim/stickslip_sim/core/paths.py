@@ -33,6 +33,20 @@ def made_folder(folder: Path) -> Iterator[None]:
                 place.rmdir()
 
 
+@contextmanager
+def replacing(place: Path) -> Iterator[Path]:
+    """Yield a path beside that of a file, whose content takes its place at the end, or vanishes on an error.
+
+    Raises OSError.
+    """
+    temporary = place.with_name(f'.{os.getpid()}.{place.name}')
+    try:
+        yield temporary
+        temporary.replace(place)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
 # The kinds of files that a picture can be; known without matplotlib, so that a wrong name is refused at once.
 
 PICTURE_FORMATS = ('.png', '.pdf', '.svg')

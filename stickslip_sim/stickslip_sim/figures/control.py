@@ -151,6 +151,12 @@ def largest_size(span: MotionSpan, column: Column) -> Figure:
     return largest(span, sizes)
 
 
+def errors_to(commanded: Numbers, position: Numbers) -> list[float]:
+    """Return the largest and the RMS size of the error of positions that are all there, m."""
+    error = np.abs(position - commanded)
+    return [float(error.max()), math.sqrt(float(np.mean(error * error)))]
+
+
 def root_mean_square(span: MotionSpan, column: Column) -> Figure:
     """Return the root of the mean square of a column over the samples."""
     square, count = 0.0, 0

@@ -4,7 +4,6 @@
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,17 +14,6 @@ from ..core.errors import InputError
 MOST_IN_MEMORY = 10_000_000   # 1.2 GB
 MOST_HELD = 200_000           # that a run holds (25 MB); more are made or read again when they are asked for
 GATHERED = 16_384   # rows at a time
-
-
-class Samples(Protocol):
-    """Samples in the order of time."""
-
-    @property
-    def columns(self) -> Columns:
-        """All of them, as columns by name."""
-
-    def blocks(self) -> Iterator[Columns]:
-        """Yield them block by block."""
 
 
 class HeldSamples:
@@ -52,6 +40,9 @@ class RemadeSamples:
             raise InputError('samples', self._count, f'at most {MOST_IN_MEMORY} to be in memory at once',
                              'take sample_blocks(), sample less often or simulate a shorter time')
         return joined(self.blocks())
+
+
+Samples = HeldSamples | RemadeSamples
 
 
 def gathered(blocks: Iterable[Columns]) -> Iterator[Columns]:

@@ -11,7 +11,7 @@
 import math
 import re
 from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -28,34 +28,6 @@ _KINDS = {kind.name.lower(): kind for kind in EventKind}
 _MOST = 10_000    # the last event that can be asked for
 _FORM = ('event.N.FIELD, KIND.N.FIELD, FIELD@TIME, or one of ' + ', '.join(Round._fields))
 _FIX = 'for example event.10.time, stick.3.position, position@0.5 or period (docs/sensitivities.md)'
-
-
-class Figure(Protocol):
-    """One number of a run."""
-
-    @property
-    def name(self) -> str:
-        """As it was asked for."""
-
-    @property
-    def unit(self) -> str:
-        """SI."""
-
-    @property
-    def time(self) -> float | None:
-        """When a sample must be taken for it, s; None: it needs none."""
-
-    def pinned(self, trace: Trace) -> 'Figure':
-        """Return the figure that is the same one in other runs as in this; raises InputError where it has none."""
-
-    def is_in(self, trace: Trace) -> bool:
-        """Whether a run is long enough for it."""
-
-    def extent(self, trace: Trace) -> tuple[int, int]:
-        """Return the first event that decides it, and the first behind those."""
-
-    def value(self, trace: Trace) -> float:
-        """Return it."""
 
 
 @dataclass(frozen=True)
@@ -171,6 +143,11 @@ class CycleFigure:
         assert self.index is not None
         first, last = break_aways(trace.events)[self.index:self.index + 2]
         return float(getattr(round_figures(trace.events[first:last + 1]), self.name))
+
+
+# One number of a run.  `time` is when a sample must be taken for it, s; `pinned` is the same figure in other runs as in
+# this; `is_in` says whether a run is long enough for it, and `extent` which events decide it.
+Figure = EventFigure | SampleFigure | CycleFigure
 
 
 def figure_of(name: Any) -> Figure:

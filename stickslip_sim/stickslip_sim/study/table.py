@@ -7,6 +7,7 @@ Nothing here runs a point.
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from typing import Any, BinaryIO, Protocol
@@ -15,6 +16,7 @@ import numpy as np
 
 from ..core.arrays import Numbers, has_parquet
 from ..core.errors import InputError
+from ..core.paths import replacing
 from ..figures.point_figures import FIGURES, MOTIONS, Figures, Motion
 
 _BYTES_OF_A_NUMBER = 25   # 17 digits, sign, point, exponent of three digits with its sign, comma
@@ -186,12 +188,7 @@ def write_parquet(columns: Mapping[str, Numbers | Sequence[str]], path: Path) ->
     """Write columns as Parquet, to the last bit; do nothing where pandas or its writer is missing or broken."""
     if not has_parquet():
         return
-    temporary = path.with_name(f'.{path.name}')
-    try:
-        import pandas
+    with suppress(ImportError), replacing(path) as temporary:
+        import pandas  # there, but not in working order: no reason to leave the table of a study unfinished
+
         pandas.DataFrame(columns).to_parquet(temporary, index=False)
-        temporary.replace(path)
-    except ImportError:   # there, but not in working order: no reason to leave the table of a study unfinished
-        pass
-    finally:
-        temporary.unlink(missing_ok=True)
