@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two axes that follow a circle: their path out of two runs, or out of a bag of both, and what limits on it come to."""
 
+import math
 from collections.abc import Sequence
 from os.path import normpath
 from typing import NamedTuple
@@ -9,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..bags.topics import SLIDER_STATE
-from ..core.arrays import Columns, Numbers
+from ..core.arrays import Columns, Numbers, rows_between
 from ..core.errors import InputError, RecordingError
 from ..figures.circular import Circle, CircularTest, least_squares_circle, turns_of
 from ..recording import Bag, RecordedRun
@@ -36,8 +37,8 @@ class Path(NamedTuple):
 
     def cut(self, span: CheckedSpan) -> 'Path':
         """Return the part within a span."""
-        rows = slice(None if span.begin is None else int(np.searchsorted(self.time, span.begin)),
-                     None if span.end is None else int(np.searchsorted(self.time, span.end, 'right')))
+        rows = rows_between(self.time, -math.inf if span.begin is None else span.begin,
+                            math.inf if span.end is None else span.end)
         return Path(self.name, self.time[rows], self.actual[rows], self.commanded[rows])
 
 

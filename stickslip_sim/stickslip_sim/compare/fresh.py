@@ -14,7 +14,7 @@ from ..core.arrays import Columns, Numbers
 from ..core.errors import InputError
 from ..core.input_profile import InputProfile
 from ..core.time_grid import Instants
-from ..core.types import Event, Sample
+from ..core.types import Event
 from ..identification.axis_model import AxisModel
 from ..identification.free_parameters import FreeParameter
 from ..identification.identified_scene import with_measured_inputs
@@ -25,7 +25,7 @@ from ..identification.run_start import from_measured_start
 from ..recording import MeasuredRun
 from ..runs import SimulatedRun, simulate_events
 from ..runs.samples import HeldSamples
-from ..runs.simulated import columns_of_rows
+from ..runs.simulated import columns_at
 from ..scene import Scene, changed
 from .ring_down import closed_form
 
@@ -48,11 +48,8 @@ def densely_sampled(run: SimulatedRun, also: Numbers | None = None) -> Simulated
     if len(run.events) > MAX_DRAWN_EVENTS:
         raise InputError('duration', duration, f'short enough for at most {MAX_DRAWN_EVENTS} events',
                          f'there are {len(run.events)}: simulate a shorter time')
-    simulator = scene.make_simulator()
     instants = _instants(scene, duration, run.events, np.empty(0) if also is None else also)
-    rows = np.empty((len(instants.seconds), len(Sample._fields)))
-    simulator.take_samples(instants, rows)
-    return replace(run, sampled=HeldSamples(columns_of_rows(rows)))
+    return replace(run, sampled=HeldSamples(columns_at(scene.make_simulator(), instants)))
 
 
 def _instants(scene: Scene, duration: float, events: list[Event], also: Numbers) -> Instants:

@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ..core.arrays import Columns, Numbers
+from ..core.arrays import Columns, Numbers, rows_between
 from ..core.types import Event, EventKind, Mode
 from ..figures.slips import begins_slip, complete_slips
 from ..plots.paper_panels import ALIKE, RANGED, DrawnMotion, DrawnSpan
@@ -153,7 +153,7 @@ def within(part: RunPart, begin: float, end: float) -> Columns:
 
     So corners and jumps are where they are.
     """
-    return in_order(*({name: source[name][rows(source['time'], begin, end)] for name in DRAWN}
+    return in_order(*({name: source[name][rows_between(source['time'], begin, end)] for name in DRAWN}
                       for source in (part.before, part.samples)))
 
 
@@ -170,17 +170,12 @@ def steady_inputs(part: RunPart, begin: float, end: float) -> SteadyInputs | Non
     """
     if part.scene.normal_load is not None:
         return None
-    inside = rows(part.samples['time'], begin, end)
+    inside = rows_between(part.samples['time'], begin, end)
     if inside.start >= inside.stop:
         return None
     seen = InputsSeen()
     seen.take(part.samples, inside)
     return seen.steady
-
-
-def rows(time: Numbers, begin: float, end: float) -> slice:
-    """Return the rows from `begin` to `end` (s), both included, of a column of times that rises."""
-    return slice(int(np.searchsorted(time, begin)), int(np.searchsorted(time, end, side='right')))
 
 
 # Which parts of a run are worth a picture.

@@ -16,6 +16,11 @@ Flags = NDArray[np.bool_]
 Columns = dict[str, Numbers]
 
 
+def rows_between(time: Numbers, begin: float, end: float) -> slice:
+    """Return the rows from `begin` to `end` (s), both included, of a column of times that rises."""
+    return slice(int(np.searchsorted(time, begin)), int(np.searchsorted(time, end, 'right')))
+
+
 def data_frame(columns: Mapping[str, Any], source: str) -> Any:
     """Return columns as a pandas.DataFrame; raises InputError without pandas: `source` has the same numbers."""
     try:

@@ -16,7 +16,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from ..core.arrays import Flags, Numbers
+from ..core.arrays import Flags, Numbers, rows_between
 from ..core.errors import InputError
 from ..core.types import Event, EventKind, Mode, tuple_of
 from .cycles import cycle_figures, mode_spans
@@ -52,7 +52,7 @@ class MotionBlock(NamedTuple):
 
     def cut(self, begin: float, end: float) -> 'MotionBlock':
         """Return the part from `begin` to `end` (s), both included."""
-        of_samples, of_points = _rows(self.time, begin, end), _rows(self.points.time, begin, end)
+        of_samples, of_points = (rows_between(time, begin, end) for time in (self.time, self.points.time))
         return tuple_of(MotionBlock, (*(column[of_samples] for column in self[:-1]),
                                       Points(*(column[of_points] for column in self.points))))
 
@@ -413,7 +413,3 @@ def _targets_of(places: Sequence[float], tolerance: float) -> list[float]:
     """Return where rests are, those within a tolerance of the one before being one."""
     places = sorted(places)
     return [place for before, place in zip([-math.inf, *places], places) if place - before > tolerance]
-
-
-def _rows(time: Numbers, begin: float, end: float) -> slice:
-    return slice(int(np.searchsorted(time, begin, 'left')), int(np.searchsorted(time, end, 'right')))

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ..core.arrays import Numbers
+from ..core.arrays import Numbers, rows_between
 from ..core.types import Mode
 from . import style
 
@@ -84,8 +84,8 @@ def _columns(labels: Sequence[str]) -> int:
 
 def part(columns: Mapping[str, Numbers], begin: float, end: float) -> dict[str, Numbers]:
     """Return the columns from `begin` to `end` (s)."""
-    first, last = np.searchsorted(columns['time'], begin), np.searchsorted(columns['time'], end, side='right')
-    return {name: column[first:last] for name, column in columns.items()}
+    rows = rows_between(columns['time'], begin, end)
+    return {name: column[rows] for name, column in columns.items()}
 
 
 def forces(panel: Axes, columns: Mapping[str, Numbers], label: str) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..core.arrays import Columns, Numbers
 from ..core.errors import InputError
 from ..core.time_grid import Instants
-from ..core.types import Event, EventKind, Sample
+from ..core.types import Event, EventKind
 from ..figures.cycles import headline
 from ..plots import plot_run
 from ..plots.overlay import Bound, plot_over_each_other
@@ -21,7 +21,7 @@ from ..plots.run import DrawnRun, TimeWindow, drawn_run
 from ..scene import Scene
 from .run import LOAD_COLUMN, STANDS, Run, normal_force_of
 from .samples import reduced
-from .simulated import SimulatedRun, columns_of_rows
+from .simulated import SimulatedRun, columns_at
 
 # When to sample a simulated run for its picture: so that no line shows the rate, however long the run is.
 #
@@ -45,9 +45,7 @@ def sampled(scene: Scene, events: Sequence[Event], windows: Iterable[tuple[float
     instants = np.unique(np.concatenate([part for begin, end in windows for part in (
         _evenly(fastest, begin, end), _by_events(times, breaks, begin, end))]))
     seconds = np.floor(instants)
-    rows = np.empty((len(instants), len(Sample._fields)))
-    scene.make_rig().take_samples(Instants(seconds, instants - seconds), rows)
-    return {**columns_of_rows(rows), **normal_force_of(scene, instants)}
+    return {**columns_at(scene.make_rig(), Instants(seconds, instants - seconds)), **normal_force_of(scene, instants)}
 
 
 def _evenly(fastest: float, begin: float, end: float) -> Numbers:

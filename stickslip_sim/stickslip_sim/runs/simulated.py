@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from ..core.arrays import Columns
 from ..core.errors import InputError
-from ..core.time_grid import decimal, instant_of, instants, multiples
+from ..core.time_grid import Instants, decimal, instant_of, instants, multiples
 from ..core.types import EnergyBalance, Event, Instant, Mode, Progress, Sample
 from ..figures.cycles import Summary, miss_note, summary, touch_note
 from ..report.values import plain, versions
 from ..scene import Scene
 from ..simulation import Rig
+from ..simulation.simulator import Simulator
 from ..simulation.step_result import Mark, marks_of_faults
 from .run import Views, normal_force_of
 from .samples import GATHERED, MOST_HELD, HeldSamples, RemadeSamples, Samples
@@ -162,6 +163,13 @@ def simulate(scene: Scene, duration: float, sample_period: float | Fraction | No
 def simulate_events(scene: Scene, duration: float, progress: Progress = None) -> SimulatedRun:
     """Simulate as `simulate` does, without any sample: for long runs, and where events say all."""
     return _simulated(scene, duration, None, progress)
+
+
+def columns_at(axis: Rig | Simulator, at: Instants) -> Columns:
+    """Return the samples of an axis at instants as columns by name, with the time as one number."""
+    rows = np.empty((len(at.seconds), len(Sample._fields)))
+    axis.take_samples(at, rows)
+    return columns_of_rows(rows)
 
 
 def columns_of_rows(rows: NDArray[np.float64]) -> Columns:
