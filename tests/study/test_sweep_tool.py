@@ -18,7 +18,7 @@ import pytest
 from stickslip_sim.cli.main import run
 from stickslip_sim.figures.point_figures import FIGURES
 from stickslip_sim.study import folder as study_folder
-from stickslip_sim.study import table
+from stickslip_sim.study import sweep
 from stickslip_sim.study.folder import PARQUET, PARTIAL, POINTS_TABLE, SIDECAR, Folder
 from stickslip_sim.study.study import study_of
 from stickslip_sim.study.table import read_columns, title_line
@@ -87,7 +87,7 @@ def test_a_sweep_does_not_read_the_table_that_it_wrote(tmp_path: Path, monkeypat
     def unexpected(*_: object) -> None:
         raise AssertionError('a table was read')
 
-    monkeypatch.setattr(table, 'read_rows', unexpected)
+    monkeypatch.setattr(sweep, 'read_columns', unexpected)
     assert run(['sweep', *SMALL, '--out', str(tmp_path / 'out')]) == 0
 
 

@@ -139,7 +139,8 @@ def setpoints_at(given: Given, times: Numbers) -> Numbers:
     Where only positions are given, the velocity is that of the way to the next of these times.  Raises InputError.
     """
     if isinstance(given, str | os.PathLike):
-        table = _table(Path(given))
+        columns = [column_of(Path(given), *names, 'setpoint') for names in _NAMES]
+        table = CsvTable('setpoint', Path(given), columns, MOST_POINTS)
         found = _interpolated(table.columns[0], table.columns[1], times)
     elif isinstance(given, Moves) or callable(given):
         found = _called(given.at if isinstance(given, Moves) else given, times)
@@ -201,10 +202,6 @@ def _interpolated(times: Numbers, positions: Numbers, wanted: Numbers) -> Number
         raise InputError('setpoint', f'{begin:g} to {end:g} s', f'from 0 to the end of the run, {wanted[-1]:g} s',
                          'let it hold to the end, or make the run shorter')
     return np.interp(wanted, times, positions)
-
-
-def _table(path: Path) -> CsvTable:
-    return CsvTable('setpoint', path, [column_of(path, *names, 'setpoint') for names in _NAMES], MOST_POINTS)
 
 
 def setpoint_columns(times: Numbers, setpoint: Numbers | None) -> Columns:

@@ -99,7 +99,7 @@ def tune(controller: Callable[[float, Measurement], Any], scene: SceneOrName, fe
     """
     scene = measured_scene(scene_of(scene))
     every = steps_between(rate, scene.time.rate)
-    feed = _feed_of(scene) if feed is None else feed
+    feed = max(map(abs, scene.drive.values)) or _DEFAULT_FEED if feed is None else feed
     if not 0.0 < abs(feed) <= scene.command.max_velocity:
         raise InputError('feed', feed, f'within ±{scene.command.max_velocity:g} m/s (command.max_velocity), not 0',
                          'give the speed of the setpoint')
@@ -123,11 +123,6 @@ def tune(controller: Callable[[float, Measurement], Any], scene: SceneOrName, fe
             raise
         run, ended = error.run, str(error)
     return Tuning(scene, run.controller, feed, scene.time.rate / every, loops, swings, run, ended)
-
-
-def _feed_of(scene: Scene) -> float:
-    """Return the largest velocity of the drive's profile."""
-    return max(map(abs, scene.drive.values)) or _DEFAULT_FEED
 
 
 def _loop(controller: Callable[[float, Measurement], Any], scene: Scene, speed: float | None,

@@ -40,7 +40,7 @@ def aligned(rows: Sequence[Sequence[str | Sentence]], texts: Sequence[int] = (0,
 
 def markdown_lines(parts: Iterable[Part], level: int = 2) -> Iterator[str]:
     """Yield the lines of a report; `level` is that of its titles.  Neighbouring notes are one list."""
-    for are_notes, group in groupby(parts, _is_note):
+    for are_notes, group in groupby(parts, lambda part: isinstance(part, Sentence) and part.kind == NOTE):
         for part in group:
             if isinstance(part, Section):
                 yield from (f'{"#" * level} {part.title}', '')
@@ -61,10 +61,6 @@ def markdown_table(heads: Sequence[str], rows: Iterable[Sequence[str | Sentence]
     cells = [[_text(cell).replace('|', '\\|') for cell in row] for row in (heads, *rows)]
     head, *others = (f'| {" | ".join(row)} |' for row in cells)
     return [head, '|---' * len(heads) + '|', *others]
-
-
-def _is_note(part: Part) -> bool:
-    return isinstance(part, Sentence) and part.kind == NOTE
 
 
 def _text(part: str | Sentence) -> str:

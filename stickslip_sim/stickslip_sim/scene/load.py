@@ -88,15 +88,11 @@ def _sections(tree: object, path: str) -> Iterator[Section]:
         raise InputError(path or 'file', tree, f'a section /**: with {_PARAMETERS}: in it', 'see the shipped scenes')
     for key, inner in tree.items():
         if key != _PARAMETERS:
-            yield from _sections(inner, _joined(path, key))
+            yield from _sections(inner, f'{path}/{key.strip("/")}')
         elif not path or not isinstance(inner, Mapping):
             raise InputError(key, inner, 'a mapping inside /**:', f'write /**: and below it {_PARAMETERS}:')
         else:
             yield Section(path, [*_flat(inner, '')])
-
-
-def _joined(path: str, key: str) -> str:
-    return f'{path}/{key.strip("/")}'
 
 
 def _fix_of_list(values: list[object]) -> str:

@@ -268,14 +268,14 @@ def _check(scene: Scene, wishes: Wishes) -> None:
                          'for example friction.static.time_constant,friction.static.limit')
     for name in names:
         _check_parameter(scene, name)
-    low, high = wishes.speeds
+    (low, high), noise = wishes.speeds, 1.0 if sensors.force_noise is None else sensors.force_noise
     for option, value, good, allowed in (
             ('--duration', wishes.duration, 0.0 < wishes.duration <= 1e5, '> 0 and <= 1e5 s'),
             ('--rate', sensors.rate, 0.0 < sensors.rate <= 1e6, '> 0 and <= 1e6 Hz'),
             ('--speeds', f'{low:g}:{high:g}', 0.0 < low < high <= 1e6, 'LOW:HIGH with 0 < LOW < HIGH, in m/s'),
             ('--resolution', sensors.resolution, 0.0 <= sensors.resolution < math.inf, 'finite and >= 0 m'),
             ('--noise', sensors.noise, 0.0 <= sensors.noise < math.inf, 'finite and >= 0 m'),
-            ('--force-noise', sensors.force_noise, _is_noise(sensors.force_noise), 'finite and > 0 N'),
+            ('--force-noise', sensors.force_noise, 0.0 < noise < math.inf, 'finite and > 0 N'),
             ('--known', wishes.known, 0.0 < wishes.known <= 10.0, '> 0 and <= 10, a share of each parameter'),
             ('--scatter', wishes.scatter, 0.0 <= wishes.scatter <= 1.0, 'from 0 to 1, a share of each parameter'),
             ('--travel', wishes.travel, wishes.travel > 0.0, '> 0 m')):
@@ -286,10 +286,6 @@ def _check(scene: Scene, wishes: Wishes) -> None:
     if not 1 <= round(wishes.duration * sensors.rate) <= _MOST_SAMPLES:
         raise InputError('--rate', sensors.rate, f'such that there are 1 to {_MOST_SAMPLES} readings in '
                          f'{wishes.duration:g} s', 'measure less often, or for a shorter time')
-
-
-def _is_noise(deviation: float | None) -> bool:
-    return deviation is None or 0.0 < deviation < math.inf
 
 
 def _check_parameter(scene: Scene, name: str) -> None:

@@ -54,8 +54,8 @@ def bifurcation(study: Study, figures: Figures, progress: Progress = None) -> Bi
     for k, value in enumerate(values):
         scene = scene_at(study.values, study.names, np.array([value]))
         if figures.motion[k] == Motion.STICK_SLIP:
-            cycles += [_row(value, cycle) for cycle in _last_cycles(
-                scene, float(figures.duration[k]), int(figures.cycles[k]))]
+            cycles += [(value, cycle.break_away_drive_force, cycle.arrest_drive_force, cycle.jump)
+                       for cycle in _last_cycles(scene, float(figures.duration[k]), int(figures.cycles[k]))]
         feed = scene.drive.values[0]
         if study.works_in_batches:
             friction = scene.axis.normal_force * scene.axis.friction.along(feed).kinetic.coefficient(abs(feed))
@@ -83,10 +83,6 @@ def _events_from(scene: Scene, begin: float, end: float) -> list[Event]:
     simulator = scene.make_simulator()
     simulator.skip(Instant(math.floor(begin), begin % 1.0))
     return simulator.advance(Instant(math.floor(end), end % 1.0))
-
-
-def _row(value: float, cycle: Cycle) -> tuple[float, float, float, float]:
-    return value, cycle.break_away_drive_force, cycle.arrest_drive_force, cycle.jump
 
 
 # Lines that the theory draws into a map of feed against another parameter.
@@ -227,13 +223,9 @@ def draw_critical_spread(study: CriticalStudy, found: Mapping[str, CriticalSprea
 
 def _draw_spreads(study: Study, spreads: Sequence[Spread], heading: str,
                   indices: Mapping[str, Mapping[str, Index] | None], path: str) -> None:
-    shares = [_shares(figure, [of[name] for name in study.names]) for figure, of in indices.items() if of]
+    shares = [Shares(figure, *np.array([of[name] for name in study.names]).T) for figure, of in indices.items() if of]
     labels = [Scale(name, '', place=place_of(study.values, name)).label for name in study.names]
     plot_uncertainty(spreads, heading, labels, shares, path)
-
-
-def _shares(figure: str, indices: Sequence[Index]) -> Shares:
-    return Shares(figure, *np.array(indices).T)
 
 
 def _scale(study: Study, one: Variation) -> Scale:
