@@ -10,6 +10,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 
 from ..core import ranges
@@ -89,9 +90,10 @@ class ExcessTable:
         return _interpolate(self.velocities, self.fractions, speed, 0.0)
 
 
+@lru_cache(maxsize=8)
 def merged_breakpoints(
     kinetic: KineticTable, excess: ExcessTable | None
-) -> list[tuple[float, float, float, float, float, float]]:
+) -> tuple[tuple[float, float, float, float, float, float], ...]:
     """Return (velocity, the next one, mu_k, psi) at every breakpoint of the two tables, and both slopes above, s/m.
 
     Behind the last breakpoint the next velocity is infinite.  The slopes are those of the given tables: between
@@ -99,10 +101,10 @@ def merged_breakpoints(
     without an excess.
     """
     speeds = sorted({*kinetic.velocities, *(excess.velocities if excess else ())})
-    return [(v, end, kinetic.coefficient(v), excess.fraction(v) if excess else 0.0,
-             _slope_above(kinetic.velocities, kinetic.coefficients, v, kinetic.end_slope),
-             _slope_above(excess.velocities, excess.fractions, v, 0.0) if excess else 0.0)
-            for v, end in pairwise((*speeds, math.inf))]
+    return tuple((v, end, kinetic.coefficient(v), excess.fraction(v) if excess else 0.0,
+                  _slope_above(kinetic.velocities, kinetic.coefficients, v, kinetic.end_slope),
+                  _slope_above(excess.velocities, excess.fractions, v, 0.0) if excess else 0.0)
+                 for v, end in pairwise((*speeds, math.inf)))
 
 
 def default_excess(kinetic: KineticTable) -> ExcessTable:

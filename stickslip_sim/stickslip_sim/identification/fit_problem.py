@@ -27,7 +27,16 @@ from .direct import (
     sliding_motion,
     static_apart,
 )
-from .force_noise import ERRORS, BreakAwayNoise, NoiseFilter, filters_of, unknown, white_of, with_static_times
+from .force_noise import (
+    ERRORS,
+    BreakAwayNoise,
+    NoiseFilter,
+    corners_of,
+    filters_of,
+    unknown,
+    white_of,
+    with_static_times,
+)
 from .free_parameters import FreeParameter, Region, region_of, values_at
 from .least_squares import STEP, Residuals, square_cost
 from .motions import MeasuredMotion, ends_in_rest, has_break_away, still_rests, stops_of, track_of
@@ -134,6 +143,8 @@ class FitProblem:
         self.widths = np.array([one.width for one in parameters])
         self._mass, self._force_noise = model.scene.axis.mass, force_noise_of(measurement)
         self._filters: tuple[NoiseFilter | None, ...] = (None,) * len(measurement.channels)
+        readings = measurement.force_readings if model.is_pushed else None
+        self._corners = corners_of(readings.values if readings else np.zeros(0), self._force_noise)
         yields, self._noisy_step = isinstance(model.scene.axis.contact, CompliantContact), _NOISY_STEP
         self._break_aways = self._measured_break_aways() if model.is_pushed and not yields else ()
         self._static_deviations: Numbers = np.zeros(0)   # of their coefficients, where static friction is free
@@ -210,7 +221,7 @@ class FitProblem:
         if parts and self._starts_in_motion:
             parts.insert(0, slice(0, parts[0].start))
         self._filters = filters_of(self.measurement, self._force_noise, self._mass, self._stops,
-                                   self._starts_in_motion, parts)
+                                   self._starts_in_motion, parts, self._corners)
         if self._break_aways:
             timed = [self._timed(one, dynamics, values) for one in self._break_aways]
             self._break_aways = tuple(one for one, _ in timed)
@@ -483,16 +494,19 @@ class FitProblem:
 
     def _columns(self, stretch: MeasuredStretch, dynamics: Dynamics, values: Numbers) -> list[Numbers] | None:
         """Return what the sensors would have measured of a stretch, (n,) for each channel; None without a motion."""
-        late, begin, held = 0.0, stretch.begin, None
+        late, begin = 0.0, stretch.begin
+        held: float | None = None
         if (start := stretch.break_away) is None:
             initial = self.model.state_after(stretch.before, dynamics, values)
         else:
             offset, scale = self.model.gain(values, 'position')
             late = start.time - float(self.measurement.times[start.first])
+            friction = dynamics.axis.friction.along(start.direction)
             held = _BELOW * start.direction * dynamics.force.value_at(begin) / dynamics.axis.normal_force
-            lets_go = held >= dynamics.axis.friction.along(start.direction).kinetic.coefficients[0]
-            initial = InitialState((start.place - offset) / scale, 0.0 if lets_go else start.direction * _CREEPS, 0.0)
-            held = held if lets_go else None
+            if friction.excess is None or held < friction.kinetic.coefficients[0]:
+                held = None
+            velocity = start.direction * _CREEPS if held is None else 0.0
+            initial = InitialState((start.place - offset) / scale, velocity, 0.0)
         columns: list[Numbers] = []
         rows: dict[float, Numbers | None] = {}
         for channel in self.measurement.channels:

@@ -52,6 +52,7 @@ _NOTICEABLE = 0.1   # of the noise of a sensor: less by the noise of the force o
 _GAP = 1.5          # periods: after longer ones the filter starts anew
 _BEFORE = 5         # samples before a stop, which in the simulation may come a little earlier
 _LEFT = 0.01        # of a step that the filter has not learnt yet
+_NONE = np.zeros(0, dtype=np.intp)   # rows
 _LEAST = 1e-9       # of the noise of a sensor: less of the force is none
 
 
@@ -87,6 +88,7 @@ class NoiseFilter(NamedTuple):
     counts: Numbers
     roots: Numbers
     break_aways: tuple[BreakAwayNoise, ...] = ()
+    corners: tuple[BreakAwayNoise, ...] = ()
 
     def white(self, residuals: Numbers) -> Numbers:
         """Return what is new in each of the residuals (n,), in their unit."""
@@ -99,10 +101,26 @@ class NoiseFilter(NamedTuple):
             before = 0.0 if first in self.known else part[0]   # that it was all along, and nothing came out
             found[first:last], _ = lfilter(numerator, self.denominator, part, zi=before * steady)
         found *= self.counts
-        for one in self.break_aways:
+        for one in (*self.corners, *self.break_aways):
             if one.shares.any():
                 one.taken_from(found)
         return found
+
+    def of_corners(self, rows: NDArray[np.intp], learns: int) -> 'NoiseFilter':
+        """Return the filter that does not know what a corner of the force at rows did: a push at the reading after."""
+        from scipy.signal import lfilter
+
+        answer, found = lfilter((1.0,), self.denominator, np.append(1.0, np.zeros(learns))), []
+        for near in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1):
+            begin = int(near[0]) + 1
+            ways: Numbers = np.zeros((len(near) + learns, len(near)))
+            for k in range(len(near)):
+                ways[k:k + learns + 1, k] = answer
+            ways = ways[:len(self.counts) - begin] * self.counts[begin:begin + len(ways), None]
+            turned, sizes, _ = np.linalg.svd(ways, full_matrices=False)
+            known = turned[:, sizes > _LEFT]
+            found.append(BreakAwayNoise(begin, known, np.full(known.shape[1], _LEAST)))
+        return self._replace(corners=tuple(found))
 
     def of_break_aways(self, changes: Sequence[Numbers], edges: NDArray[np.intp], scales: Numbers) -> 'NoiseFilter':
         """Return the filter that knows how residuals (n,) change by errors of the force at break-aways.
@@ -121,9 +139,11 @@ class NoiseFilter(NamedTuple):
 
     def from_row(self, rows: slice) -> 'NoiseFilter':
         """Return the filter of some rows, at the first of which the simulation is right; without its break-aways."""
+        corners = tuple(one._replace(begin=one.begin - rows.start) for one in self.corners
+                        if rows.start <= one.begin <= rows.stop - len(one.ways))
         begins = (0, *(row - rows.start for row in self.begins if rows.start < row < rows.stop))
         return self._replace(begins=begins, known=frozenset({0}), counts=self.counts[rows], roots=self.roots[rows],
-                             break_aways=())
+                             break_aways=(), corners=corners)
 
     def weighted(self, residuals: Numbers) -> Numbers:
         """Return `white` residuals (n,) times the roots of their weights, without what break-aways leave unknown."""
@@ -139,8 +159,21 @@ def unknown(begin: int, way: Numbers) -> BreakAwayNoise:
     return BreakAwayNoise(begin, way[:, None] / max(float(np.linalg.norm(way)), 1e-300), np.zeros(1))
 
 
+def corners_of(values: Numbers, noise: float) -> NDArray[np.intp]:
+    """Return the rows of readings (n,) beside a corner of the force: there a line through them is off by more.
+
+    How much the corner is worth depends on where it is between two readings.
+    """
+    turns = np.diff(values, 2)
+    if len(turns) < 3:
+        return _NONE
+    limit = max(_CORNER * noise, _USUAL * float(np.median(np.abs(turns))))
+    return np.flatnonzero((np.abs(turns) > limit) & ~_are_even(turns)) + 1
+
+
 def filters_of(measurement: SensorReadings, force_noise: float, mass: float, stops: Numbers,
-               moves: bool = False, parts: Sequence[slice] = ()) -> tuple[NoiseFilter | None, ...]:
+               moves: bool = False, parts: Sequence[slice] = (), corners: NDArray[np.intp] = _NONE
+               ) -> tuple[NoiseFilter | None, ...]:
     """Return a filter for each channel, None where noise of the force (N, a standard deviation) does not show.
 
     The slider comes to rest, or turns, at the times `stops` (s); at the start it `moves`, nobody knows how, or rests.
@@ -150,12 +183,12 @@ def filters_of(measurement: SensorReadings, force_noise: float, mass: float, sto
     gaps = np.flatnonzero(np.diff(measurement.times) > _GAP * measurement.period) + 1
     unknown = [*([0] if moves else []), *gaps.tolist()]
     rows = np.searchsorted(measurement.times, stops)
-    return tuple(_filter(channel, step, measurement.period, unknown, rows, parts)
+    return tuple(_filter(channel, step, measurement.period, unknown, rows, parts, corners)
                  for channel in measurement.channels)
 
 
 def _filter(channel: Channel, step: float, period: float, unknown: Sequence[int], stops: NDArray[np.intp],
-            parts: Sequence[slice]) -> NoiseFilter | None:
+            parts: Sequence[slice], corners: NDArray[np.intp]) -> NoiseFilter | None:
     orders = {'velocity': 1, 'position': 2}
     order, count = orders.get(channel.name, 0), len(channel.values)
     grown = step * count**0.5 * (period * count if order == 2 else 1.0)
@@ -176,8 +209,9 @@ def _filter(channel: Channel, step: float, period: float, unknown: Sequence[int]
             later = inside[inside >= row]
             counts[row:int(later[0]) if len(later) else part.stop] = 0.0
     known = frozenset(part.start for part in parts or whole)
-    return NoiseFilter(order, denominator, more * own, tuple(sorted({0, *unknown, *known})), known, counts,
-                       np.sqrt(channel.weights))
+    found = NoiseFilter(order, denominator, more * own, tuple(sorted({0, *unknown, *known})), known, counts,
+                        np.sqrt(channel.weights))
+    return found.of_corners(corners, learns) if len(corners) and order == 2 else found
 
 
 def _of_velocity(ratio: float) -> tuple[tuple[float, ...], float]:
@@ -227,6 +261,7 @@ def with_static_times(friction: Friction, factor: float) -> Friction:
 _LENGTHS = 5, 9, 17, 33, 65   # readings in a parabola: the longest one that follows the force is taken
 _CHANCE = 4.0   # standard deviations of a mean square: residuals of a parabola up to that are noise
 _EVEN = 0.3     # of a second difference: so far those beside it may be from one of a force that turns evenly
+_CORNER, _USUAL = 12.0, 20.0   # of the noise, and of the median second difference: a larger one is a corner
 _FEWEST = 100   # readings at rest, of which the noise is taken
 
 
@@ -251,7 +286,7 @@ def with_quiet_rests(measurement: SensorReadings, motions: Sequence[MeasuredMoti
     if sum(map(len, thirds)) >= _FEWEST:
         least = SMALLEST_FORCE * float(np.ptp(values))
         noise = min(max(noise_of_thirds(np.concatenate(thirds), quantum), least), noise)
-    values = _bent(values)
+    values = _bent(values, quantum)
     deviations = np.full(len(times), noise)
     for rest in rests:
         values[rest], deviations[rest] = _smoothed(values[rest], noise, weights[rest])
@@ -259,17 +294,22 @@ def with_quiet_rests(measurement: SensorReadings, motions: Sequence[MeasuredMoti
                    force_deviations=deviations)
 
 
-def _bent(values: Numbers) -> Numbers:
-    """Return readings (n,) through which lines do what the force does that turns evenly at them (Numerov's rule).
+def _bent(values: Numbers, quantum: float) -> Numbers:
+    """Return readings (n,) through which lines do what the force does where it turns evenly at them (Numerov's rule).
 
-    A line through two readings is off by a twelfth of the second difference, always to the same side.
+    A line through two readings is off by a twelfth of the second difference, always to the same side.  A turn that may
+    be noise stays.
     """
-    turns = np.diff(values, 2)
-    apart = np.abs(np.diff(turns))
-    is_even = np.maximum(apart[:-1], apart[1:]) < _EVEN * np.abs(turns[1:-1])
+    turns, least = np.diff(values, 2), _CORNER * noise_of_thirds(np.diff(values, 3), quantum)
     found = values.copy()
-    found[2:-2] -= np.where(is_even, turns[1:-1], 0.0) / 12.0
+    found[1:-1] -= np.where(_are_even(turns) & (np.abs(turns) > least), turns, 0.0) / 12.0
     return found
+
+
+def _are_even(turns: Numbers) -> NDArray[np.bool_]:
+    """Return where second differences (n,) are as those beside them."""
+    apart = np.abs(np.diff(turns))
+    return np.pad(np.maximum(apart[:-1], apart[1:]) < _EVEN * np.abs(turns[1:-1]), 1)
 
 
 def _smoothed(values: Numbers, noise: float, weights: Numbers) -> tuple[Numbers, Numbers]:

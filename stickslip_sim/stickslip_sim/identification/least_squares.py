@@ -88,18 +88,23 @@ class Solution(NamedTuple):
 
 
 def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Region, step: _Step) -> Numbers:
-    """Return the derivatives (n, k) of residuals, which are `here` at a point, by central differences over a step.
+    """Return the derivatives (n, k) of residuals, which are `here` at a point, by differences over a step.
 
-    There may be a step for each parameter (k,).  They are one-sided at a border, and where there is no motion on one
-    side; 0 where there is on none.  A number that is raised at a border may raise another one with it: the derivatives
-    of single ones follow from those along all ways.
+    There may be a step for each parameter (k,).  Over the shortest one they are one-sided, over a longer one central,
+    but at a border, and where there is no motion on one side; 0 where there is on none.  A number that is raised at a
+    border may raise another one with it: the derivatives of single ones follow from those along all ways.
     """
     ways, changes, steps = np.eye(len(point)), [], np.broadcast_to(step, point.shape)
     for k in range(len(point)):
-        ends = [region.inside(point + sign * steps[k] * ways[k]) for sign in (1.0, -1.0)]
-        found = [here if np.array_equal(end, point) else residuals(end) for end in ends]
-        (up, above), (down, below) = ((end, there) if np.isfinite(there[0]) else (point, here)
-                                      for end, there in zip(ends, found))
+        found = []
+        for sign in (1.0, -1.0):
+            end = region.inside(point + sign * steps[k] * ways[k])
+            there = here if np.array_equal(end, point) else residuals(end)
+            found.append((end, there) if np.isfinite(there[0]) else (point, here))
+            if sign > 0.0 and steps[k] <= STEP and np.isfinite(there[0]) and end[k] != point[k]:
+                found.append((point, here))
+                break
+        (up, above), (down, below) = found
         length = up[k] - down[k]
         changes.append((above - below) / length if length else np.zeros(len(here)))
         ways[k] = (up - down) / length if length else ways[k]
