@@ -7,14 +7,10 @@ repository, so that the page needs no more than the tool.
 """
 
 import csv
-import json
-import math
 import pathlib
-import re
 import shutil
 import sys
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -26,11 +22,10 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.plots.characteristics import plot_known_friction
 from stickslip_sim.plots.identified_motion import plot_fit, plot_residuals
 from stickslip_sim.recording import read_run
-from stickslip_sim.report.text import markdown_table
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene.load import changed
 
-from .page import quoted, replace_generated, said, shown
+from .page import excerpt, quoted, replace_generated, said, shown
 
 PAGE = pathlib.Path('docs/identification.md')
 EXAMPLES, RUNS, IMAGES = pathlib.Path('examples/identify'), pathlib.Path('runs/identify'), pathlib.Path('docs/images')
@@ -85,19 +80,7 @@ def commands() -> None:
         parts = [f'{shown(command)}\n\n{quoted(excerpt(text, LEFT_OUT[name]))}'
                  for command, text in zip(given, texts, strict=True)]
         replace_generated(PAGE, '\n'.join(parts), name)
-    report = json.loads((RUNS / 'axis_found/report.json').read_text(encoding='utf-8'))
-    replace_generated(PAGE, truth_table(report), 'truth')
     replace_generated(PAGE, f'```yaml\n{(EXAMPLES / "free.yaml").read_text(encoding="utf-8")}```\n', 'free')
-
-
-def truth_table(report: Mapping[str, Any]) -> str:
-    """Return what was found of the axis that is known, beside the truth."""
-    rows = []
-    for one in report['estimates']:
-        truth, value = TRUTH[one['name']], one['value']
-        scores = math.log(value / truth) / one['standard_deviation']
-        rows.append((f'`{one["name"]}`', f'{truth:g}', f'{100.0 * (value / truth - 1.0):+.3f}', f'{scores:+.1f}'))
-    return '\n'.join(markdown_table(('parameter', 'truth (SI)', 'error / %', 'in standard deviations'), rows)) + '\n'
 
 
 def pictures() -> None:
@@ -111,17 +94,6 @@ def pictures() -> None:
         else:
             plot_fit(channels, usual_cycles(found), found.restarts, IMAGES / 'identified_fit.png')
             plot_known_friction(known_friction(run, found), IMAGES / 'identified_friction.png')
-
-
-def excerpt(text: str, left_out: str) -> str:
-    """Return what a command printed without the time that it took, and "..." for lines that begin like `left_out`."""
-    lines = []
-    for line in re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE).splitlines():
-        if not re.match(left_out, line):
-            lines.append(line)
-        elif lines[-1:] != ['...']:
-            lines.append('...')
-    return '\n'.join(lines)
 
 
 def _write(path: pathlib.Path, samples: Mapping[str, Numbers]) -> None:

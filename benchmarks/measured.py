@@ -112,13 +112,6 @@ def marks() -> str:
 LATENESS: Columns = {'lateness p50, µs': number('lateness_p50', 1e6), 'p99': number('lateness_p99', 1e6)}
 
 
-def loop() -> str:
-    """Return the loops under commands."""
-    return table({'loop': text('loop'), 'achieved, 1/s': number('achieved', form='.1f'), **LATENESS,
-                  'p99.9': number('lateness_p999', 1e6), 'CPU per step, µs': number('cpu', 1e6)},
-                 [row for row in kept('loop')['rows'] if row['commands'] is not None])
-
-
 def hil() -> str:
     """Return the node beside a bare node, and the ratios that have marks."""
     rows = kept('hil')['beside']
@@ -217,4 +210,4 @@ def soak() -> str:
 
 
 PARTS: Mapping[str, Callable[[], str]] = {one.__name__: one for one in (
-    races, marks, loop, hil, rates, busy, identification, varied, rivals, extremes, smooth_laws, soak)}
+    races, marks, hil, rates, busy, identification, varied, rivals, extremes, smooth_laws, soak)}

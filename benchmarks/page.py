@@ -3,6 +3,7 @@
 """Parts of a page that a program writes, between `<!-- NAME: begin -->` and `<!-- NAME: end -->`; commands in them."""
 
 import pathlib
+import re
 import shlex
 import subprocess
 import sys
@@ -41,6 +42,17 @@ def shown(command: str, program: str = 'stickslip') -> str:
 def quoted(text: str) -> str:
     """Return what a command printed as a part of a page."""
     return ''.join(f'    {line}'.rstrip() + '\n' for line in text.splitlines())
+
+
+def excerpt(text: str, left_out: str) -> str:
+    """Return what a command printed without the time that it took, and "..." for lines that begin like `left_out`."""
+    lines = []
+    for line in re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE).splitlines():
+        if not re.match(left_out, line):
+            lines.append(line)
+        elif lines[-1:] != ['...']:
+            lines.append('...')
+    return '\n'.join(lines)
 
 
 def said(command: str, code: int = 0) -> str:

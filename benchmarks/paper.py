@@ -103,7 +103,7 @@ CHOICES = [
     Choice('mu_k between its points', 'Gaussian', {f'{_KINETIC}.law': 'stribeck',
            f'{_KINETIC}.stribeck_velocity': 0.035 / math.sqrt(math.log(100.0)), **_SMOOTH}, False),
     Choice('v_gr = 35', 'read as m/s', {f'{_KINETIC}.velocities': [0.0, 35.0],
-           f'{_KINETIC}.coefficients': [0.12, 0.05]}),
+           f'{_KINETIC}.coefficients': [0.12, 0.05]}, False),
 ]
 
 

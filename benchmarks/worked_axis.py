@@ -7,7 +7,6 @@
 """
 
 import pathlib
-import re
 import shutil
 import sys
 from collections.abc import Mapping
@@ -20,7 +19,7 @@ from stickslip_sim.inputs import load_scene
 from stickslip_sim.runs import simulate
 from stickslip_sim.scene.load import changed
 
-from .page import quoted, replace_generated, said, shown
+from .page import excerpt, quoted, replace_generated, said, shown
 
 PAGE, PICTURE = pathlib.Path('docs/worked_axis.md'), pathlib.Path('docs/images/worked_prediction.png')
 EXAMPLES, RUNS = 'examples/worked_axis', pathlib.Path('runs/worked')
@@ -53,8 +52,7 @@ COMMANDS: Mapping[str, str] = {        # by the name of the part of the page
     'compare': f'compare {RUNS}/m3 {RUNS}/found/identified.yaml --set friction.scale=0.9925 --out {RUNS}/beside',
 }
 
-LEFT_OUT = re.compile(r'(?:^(?:(?:note|m3): | +(?:velocity and acc|87 readings|note: (?:2 runs|the drive))|not best'
-                      r'|fewer than).*\n)+', re.MULTILINE)
+LEFT_OUT = r'(?:note|m3): | +(?:velocity and acc|87 readings|note: (?:2 runs|the drive))|not best|fewer than'
 
 
 def main() -> None:
@@ -101,11 +99,6 @@ def steps() -> list[tuple[str, str]]:
     return [('import', first), *more, *((name, command) for name, command in COMMANDS.items() if name != 'import')]
 
 
-def shortened(text: str) -> str:
-    """Return what a command printed without the time that it took, and `...` for lines that the page can do without."""
-    return LEFT_OUT.sub('...\n', re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE))
-
-
 def page() -> None:
     """Run the commands of the page, quote them with what they print, and draw the prediction."""
     for made in ('m1', 'm2', 'm3', 'found', 'prediction', 'beside'):
@@ -114,7 +107,7 @@ def page() -> None:
     replace_generated(PAGE, quoted('\n'.join(head)), 'export')
     replace_generated(PAGE, f'```yaml\n{pathlib.Path(EXAMPLES, "free.yaml").read_text(encoding="utf-8")}```\n', 'free')
     for name, command in steps():
-        printed = shortened(said(command))
+        printed = excerpt(said(command), LEFT_OUT)
         if name:
             replace_generated(PAGE, f'{shown(command)}\n\n{quoted(printed)}', name)
     drifted = changed(load_scene(str(RUNS / 'found/identified.yaml')), {'friction.scale': 0.9925})

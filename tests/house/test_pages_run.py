@@ -16,7 +16,7 @@ from benchmarks.identification import COMMANDS, EXAMPLES, FAILS, TRUTH
 from benchmarks.loops_page import PICTURES as LOOP_PICTURES
 from benchmarks.loops_page import blocks, page_commands, write_inputs
 from benchmarks.maps import CRITICAL, PICTURES, UNCERTAIN, picture_of, shortened
-from benchmarks.page import part_of, quoted
+from benchmarks.page import excerpt, part_of, quoted
 from stickslip_sim.closed_loop.report import tuning_report
 from stickslip_sim.inputs import load_scene
 from stickslip_sim.report.text import text_lines
@@ -167,7 +167,7 @@ def test_the_worked_axis(clone: Path, capsys: Capture) -> None:
     coarser = {'identify': ' --set friction.kinetic.tolerance=1e-3'}    # than the default of 1e-4: for half the time
     said = {name: done(capsys, command + coarser.get(name, '')) for name, command in worked_axis.steps()}
     for name in ('import', 'plot', 'friction'):
-        assert quoted(worked_axis.shortened(said[name])) in part_of(WORKED, name), name
+        assert quoted(excerpt(said[name], worked_axis.LEFT_OUT)) in part_of(WORKED, name), name
     printed = part_of(WORKED, 'identify')
     there, here = TestIdentification().found_in(printed), TestIdentification().found_in(said['identify'])
     report = json.loads((clone / worked_axis.RUNS / 'found/report.json').read_text(encoding='utf-8'))

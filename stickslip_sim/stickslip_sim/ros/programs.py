@@ -79,7 +79,7 @@ def spin(node: Any, signals: 'Signals', is_over: Callable[[], bool] = lambda: Fa
 
 
 def make_executor() -> Any:
-    """Return the executor that takes the least of the interpreter from the step loop (docs/measured.md#the-loop)."""
+    """Return the executor that takes the least of the interpreter from the step loop (docs/data/loop.json)."""
     try:
         from rclpy.experimental import EventsExecutor
     except ImportError:
