@@ -364,3 +364,10 @@ def test_without_friction_and_a_command_the_slider_rests_under_a_load(tmp_path: 
         instance.setFloat64([DRIVE, fmu.reference('friction.scale')], [0.0, 0.0])
         instance.doStep(0.0, 1.0)
         assert instance.last_event()[0] == 0
+
+
+def test_an_axis_without_friction_has_no_factor_on_it(tmp_path: Path) -> None:
+    fmu = exported(tmp_path, 'paper_fig8', {'friction.scale': 0.0})
+    assert {'axis.mass', 'friction.static.limit'} <= {one.name for one in fmu.description.modelVariables}
+    with pytest.raises(StopIteration):
+        fmu.reference('friction.scale')

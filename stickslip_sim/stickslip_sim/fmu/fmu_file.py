@@ -127,7 +127,8 @@ def _variables(scene: Scene, normal: InputProfile | None) -> Iterator[_Variable]
     yield _Variable(31, 'event_time', 'Float64', 'output', 'discrete', 'time of the last event', 's')
     yield _Variable(32, 'event_kind', 'EventKind', 'output', 'discrete', 'kind of the last event')
     tuned = (one for one in PARAMETERS if one.name in _TUNED and (one.when is None or one.when.holds(scene.values))
-             and not (one.name == 'axis.normal_force' and normal is not None))
+             and not (one.name == 'axis.normal_force' and normal is not None)
+             and (one.name != 'friction.scale' or scene.values.get(one.name) != 0.0))    # nothing grows out of 0
     for i, one in enumerate(tuned, 40):
         start = scene.values.get(one.name, 1.0 if one.name == 'friction.scale' else 0.0)
         yield _Variable(i, one.name, 'Float64', 'parameter', 'tunable', one.description, one.unit.replace(' ', '.'),
