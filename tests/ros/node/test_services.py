@@ -419,7 +419,7 @@ class TestStandardServices:
             features = axis.call(PACKAGE.srv.GetSimulatorFeatures, 'get_simulator_features').features
             assert features.features == [20, 24, 25, 31, 32, 26]
             assert self.set_state(axis, PLAYING)[0] == ALREADY
-            for state in (PAUSED, STOPPED):
+            for state in (PAUSED, PLAYING, STOPPED):
                 assert self.set_state(axis, state) == (OK, '')
                 assert self.state(axis) == state
                 assert self.set_state(axis, QUITTING)[0] == UNSUPPORTED
