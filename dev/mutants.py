@@ -55,8 +55,12 @@ class Mutant(NamedTuple):
 
 def mutants() -> list[Mutant]:
     """Return the mutants of `mutants.yaml`."""
-    given = yaml.safe_load(Path(__file__).with_suffix('.yaml').read_text(encoding='utf-8'))
-    return [Mutant(file, name, **rest) for file, entries in given.items() for name, rest in entries.items()]
+    text = Path(__file__).with_suffix('.yaml').read_text(encoding='utf-8')
+    found = [Mutant(file, name, **rest) for file, entries in yaml.safe_load(text).items()
+             for name, rest in entries.items()]
+    if len(found) != text.count('\n    old: '):
+        raise ValueError('mutants.yaml names a file or a mutant twice, and the last one hides the others')
+    return found
 
 
 def fault(mutant: Mutant) -> str:

@@ -124,6 +124,6 @@ def test_plain_python_in_its_place_is_reported_once_with_the_fix(before: str, wh
     assert 'STICKSLIP_COMPILED=0' in said
 
 
-@pytest.mark.parametrize('before', ['', MISSING, STALE, MOVED])
+@pytest.mark.parametrize('before', ['', STALE])
 def test_plain_python_that_was_asked_for_is_not_reported(before: str, in_a_process: Program) -> None:
     assert in_a_process(before + LOAD, compiled=False) == 'plain python\n'

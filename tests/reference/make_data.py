@@ -34,15 +34,7 @@ DIGITS = 25
 MORE_DIGITS = 32  # of the paper's and the benchmark's runs
 SAMPLES = 12
 EPSILON = mpf(10) ** -20
-NUMBERS = (
-    'time',
-    'position',
-    'velocity',
-    'drive_force',
-    'friction_force',
-    'static_coefficient',
-    'rest_time',
-)
+NUMBERS = ('time', 'position', 'velocity', 'drive_force', 'friction_force', 'static_coefficient', 'rest_time')
 
 
 def chosen_scenes() -> list[Scene]:
@@ -69,10 +61,7 @@ def record(scene: Scene) -> dict[str, Any] | None:
 
 def events_table(run: Run, digits: int) -> dict[str, list[Any]]:
     """Return the events column by column, numbers as strings."""
-    columns: dict[str, list[Any]] = {
-        'kind': [e.kind for e in run],
-        'direction': [e.direction for e in run],
-    }
+    columns: dict[str, list[Any]] = {'kind': [e.kind for e in run], 'direction': [e.direction for e in run]}
     for name in NUMBERS:
         columns[name] = [mpmath.nstr(getattr(e, name), digits) for e in run]
     return columns

@@ -30,12 +30,7 @@ def paper(*, contact: str = 'rigid', dependence: bool = True, velocity: float = 
     """Return the paper's data with N = m g."""
     model = {'model': 'rigid'} if contact == 'rigid' else {'model': 'compliant', 'stiffness': 5.0e6, 'damping': 15000.0}
     return {
-        'axis': {
-            'mass': 350.0,
-            'drive_stiffness': 6.0e5,
-            'drive_damping': 4000.0,
-            'normal_force': 3432.3275,
-        },
+        'axis': {'mass': 350.0, 'drive_stiffness': 6.0e5, 'drive_damping': 4000.0, 'normal_force': 3432.3275},
         'contact': model,
         'friction': {
             'static': {'law': 'exponential', 'initial': 0.12, 'limit': 0.24, 'time_constant': tau},

@@ -18,11 +18,21 @@ from mpmath import mpf  # noqa: E402
 from stickslip_sim.reference.exact_run import Run  # noqa: E402
 from stickslip_sim.reference.roots import bernstein, first_root  # noqa: E402
 from stickslip_sim.reference.series import series, to_binary, to_decimal, working  # noqa: E402
-from tests.reference.figures import agrees  # noqa: E402
 from tests.reference.inclusion import violations  # noqa: E402
 from tests.reference.scenes import Parameters, Scene, paper, random_scenes, shipped_scenes  # noqa: E402
 from tests.support.stored_objects import exact_run as simulate  # noqa: E402
 from tests.support.stored_runs import stored  # noqa: E402
+
+
+def agrees(number: Any, printed: str | None) -> bool:
+    """Compare with a printed figure, to a unit of its last digit (or 3e-16 where it is a double)."""
+    if printed is None:
+        return True
+    mantissa, _, exponent = printed.partition('e')
+    digits = len(mantissa.partition('.')[2])
+    unit = 10.0 ** (int(exponent or 0) - digits)
+    return bool(abs(number - mpf(printed)) <= max(unit, 3e-16 * abs(float(printed))))
+
 
 # ---- closed forms ---------------------------------------------------------------------------------
 
@@ -310,11 +320,7 @@ def assert_events(run: Run, expected: list[tuple[str, str | None, str | None, st
 
 @pytest.mark.parametrize(
     ('parameters', 'expected'),
-    [
-        (paper(), RIGID),
-        (paper(contact='compliant'), COMPLIANT),
-        (paper(dependence=False), CONVENTIONAL),
-    ],
+    [(paper(), RIGID), (paper(contact='compliant'), COMPLIANT), (paper(dependence=False), CONVENTIONAL)],
     ids=['rigid', 'compliant', 'conventional'],
 )
 def test_first_events_of_the_paper_data(parameters: Parameters, expected: list[Any]) -> None:
