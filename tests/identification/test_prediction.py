@@ -12,6 +12,7 @@ import stickslip_sim as stickslip
 from stickslip_sim.core.arrays import Numbers
 from stickslip_sim.core.errors import InputError
 from stickslip_sim.identification.identified import Prediction, fit_percent
+from stickslip_sim.identification.prediction import KnownSensors, predicted
 from stickslip_sim.scene import Scene, changed, scene_from_values
 from tests.support.measured_runs import (
     ENCODER,
@@ -112,6 +113,10 @@ def test_a_pushed_axis_has_offset_and_delay_of_its_force_found(tmp_path: Path) -
     assert found.values['sensor.external_force.delay'] == pytest.approx(7e-4, abs=5e-5)
     assert found.values['sensor.external_force.offset'] == pytest.approx(3.0, abs=0.02)
     assert found.channels[0].fit_percent > 99.9
+    for late, least, most in ((7e-4, 99.9, 100.0), (6e-3, 0.0, 99.9)):   # one that is known stays, right or wrong
+        known = predicted(MOTOR, 'pushed', KnownSensors({'sensor.external_force.delay': late}, ()), run)
+        assert [one.name for one in known.found] == ['sensor.position.offset', 'sensor.external_force.offset']
+        assert least < known.channels[0].fit_percent <= most
     with pytest.raises(InputError, match='measured with its external_force or drive_force: nothing else moves'):
         stickslip.predict(MOTOR, as_run(tmp_path / 'unmeasured', times, {'position': place}))
 

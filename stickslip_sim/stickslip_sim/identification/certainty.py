@@ -234,7 +234,7 @@ class Profile:
             begin = region.inside(near.point)
         cost, point = self._cost(begin), begin
         if np.isfinite(cost):
-            found = minimise(self._residuals, begin, region, most=10, tolerance=1e-2 * self._limit)
+            found = minimise(self._residuals, begin, region, most=10, tolerance=1e-2 * self._limit, informs=False)
             cost, point = found.cost, found.point
         return _Place(at, float(np.sqrt(max(cost - self._best.cost, 0.0) / self._limit)), point)
 

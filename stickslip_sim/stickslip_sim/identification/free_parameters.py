@@ -57,17 +57,22 @@ class FreeParameter:
 
     @property
     def width(self) -> float:
-        """The width of the range, as the fit sees it."""
-        return self.inner(self.high) - self.inner(self.low)
+        """The width of the range, as the fit sees it; 1 of one that is held."""
+        return self.inner(self.high) - self.inner(self.low) or 1.0
+
+    @property
+    def _range(self) -> float:
+        """The width of the range in the unit; 1 of one that is held."""
+        return self.high - self.low or 1.0
 
     def inner(self, value: float) -> float:
         """Return what the fit works on."""
-        return math.log(value) if self.logarithmic else value / (self.high - self.low)
+        return math.log(value) if self.logarithmic else value / self._range
 
     def outer(self, number: float) -> float:
         """Return the value of what the fit works on, kept within the range."""
         inside = min(max(number, self.inner(self.low)), self.inner(self.high))   # before exp, which may overflow
-        value = math.exp(inside) if self.logarithmic else inside * (self.high - self.low)
+        value = math.exp(inside) if self.logarithmic else inside * self._range
         return min(max(value, self.low), self.high)
 
 

@@ -182,7 +182,7 @@ class FoundNumber:
 class Prediction:
     """What a scene says of a measured run: `channels` measured and predicted, with their own sensors.
 
-    `found` is what was fitted to the run, and nothing else: offset and delay of its sensors, and its start.
+    `found` is what was fitted to the run, and nothing else: offsets of its sensors, delays not known, and its start.
     `stretch_fit` is the fit in % of the stretch of the drive spring, NaN without one: the position follows the drive
     whatever the friction is.
     """

@@ -59,7 +59,7 @@ from .least_squares import square_cost
 from .many_fits import Keeper, fits_from
 from .motions import MeasuredMotion, motions_of, track_of
 from .other_laws import CRITERION, along_the_run, best_of_slips, criterion_of, with_laws
-from .prediction import check_is_moved, predict
+from .prediction import KnownSensors, check_is_moved, predict, predicted
 from .readings import SensorReadings, check_distinct, drives_directly, readings_of, travelled
 from .run_start import from_measured_start
 from .several_runs import RunFit, disagreements, is_own, joint_ends
@@ -365,7 +365,9 @@ def _along(found: Identification, run: Run, own: Mapping[str, float]) -> Predict
     """Return the scene along another run that was fitted, with the numbers that this has of its own."""
     names = [name for name in own if not name.startswith(('sensor.', 'initial.'))]
     values = changes_at(found.scene.values, names, np.array([own[name] for name in names]))
-    along = predict(replace(found, scene=changed(found.scene, values)), run)
+    scene = changed(found.scene, values)
+    errors = {name: value for name, value in {**found.values, **own}.items() if name.startswith('sensor.')}
+    along = predicted(scene, scene.name, KnownSensors(errors, found.measured_inputs), run)
     return replace(along, notes=('it was fitted, too: no test of the scene', *along.notes))
 
 

@@ -87,12 +87,14 @@ class Solution(NamedTuple):
     is_settled: bool
 
 
-def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Region, step: _Step) -> Numbers:
-    """Return the derivatives (n, k) of residuals, which are `here` at a point, by differences over a step.
+def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Region, step: _Step,
+              one_sided: bool = False) -> Numbers:
+    """Return the derivatives (n, k) of residuals, which are `here` at a point, by central differences over a step.
 
-    There may be a step for each parameter (k,).  Over the shortest one they are one-sided, over a longer one central,
-    but at a border, and where there is no motion on one side; 0 where there is on none.  A number that is raised at a
-    border may raise another one with it: the derivatives of single ones follow from those along all ways.
+    There may be a step for each parameter (k,).  They are one-sided at a border, and where there is no motion on one
+    side; 0 where there is on none; and over the shortest step if they may be `one_sided`, which is right to 1e-6 for
+    half the work.  A number that is raised at a border may raise another one with it: the derivatives of single ones
+    follow from those along all ways.
     """
     ways, changes, steps = np.eye(len(point)), [], np.broadcast_to(step, point.shape)
     for k in range(len(point)):
@@ -101,7 +103,7 @@ def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Regio
             end = region.inside(point + sign * steps[k] * ways[k])
             there = here if np.array_equal(end, point) else residuals(end)
             found.append((end, there) if np.isfinite(there[0]) else (point, here))
-            if sign > 0.0 and steps[k] <= STEP and np.isfinite(there[0]) and end[k] != point[k]:
+            if one_sided and sign > 0.0 and steps[k] <= STEP and np.isfinite(there[0]) and end[k] != point[k]:
                 found.append((point, here))
                 break
         (up, above), (down, below) = found
@@ -133,25 +135,30 @@ def steps_over_jumps(residuals: Residuals, found: 'Solution', region: Region, st
 
 def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int, tolerance: float,
              share: float = 1e-9, far: float = np.inf, robust: float = np.inf, step: _Step = STEP,
-             steepest: float = np.inf) -> Solution:
+             steepest: float = np.inf, informs: bool = True) -> Solution:
     """Return where the sum of squares is least, from a point on, after at most so many steps.
 
     It ends where the next step would gain less than `tolerance`, or that `share` of the sum, of a sum beyond `far` a
     larger one; it is settled if a step without damping would not gain much more, or does not, as on a plateau of what
     the data do not determine.
     Residuals are all NaN where the parameters contradict each other; those beyond `robust` count by their size, not
-    their square.  A derivative beyond `steepest` is that of a jump, and is left out.
+    their square.  A derivative beyond `steepest` is that of a jump, and is left out.  Where the solution `informs`, its
+    JᵀJ is by central differences: what the data do not determine shows in nothing else.
     """
+    def jacobian(one_sided: bool) -> tuple[Numbers, Numbers]:
+        slopes, weights = slopes_of(residuals, point, here, region, step, one_sided), _weights(here, robust)
+        slopes[np.abs(slopes) > steepest] = 0.0
+        return slopes, slopes if weights is None else slopes * weights[:, None]
+
+    def end(is_settled: bool) -> Solution:
+        slopes, weighted = jacobian(False) if informs else (np.eye(len(point)),) * 2
+        return Solution(point, cost, weighted.T @ slopes, is_settled)
+
     point = region.inside(point)
     here = residuals(point)
-    cost = _cost(here, robust)
-    damping, growth = _DAMPING, 2.0
-    information = np.eye(len(point))
+    cost, damping, growth = _cost(here, robust), _DAMPING, 2.0
     for _ in range(most):
-        slopes = slopes_of(residuals, point, here, region, step)
-        slopes[np.abs(slopes) > steepest] = 0.0
-        weights = _weights(here, robust)
-        weighted = slopes if weights is None else slopes * weights[:, None]
+        slopes, weighted = jacobian(True)
         information, gradient = weighted.T @ slopes, weighted.T @ here
         least = max(tolerance, (share if cost <= far else max(share, _CRAWLS)) * cost)
         while True:
@@ -159,11 +166,9 @@ def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int,
             gain = _gain(information, gradient, move)
             if not gain > least or damping > _MOST_DAMPING:
                 whole = bounded_step(information, gradient, _UNDAMPED, point, region)
-                much = _SETTLED * least
-                is_settled = not _gain(information, gradient, whole) > much or all(
-                    cost - _cost(residuals(point + part * whole), robust) < much for part in _SHARES)
-                return Solution(point, cost, information, is_settled)
-            bent = None if weights is not None else _bend(residuals, slopes, here, point, move)
+                return end(not _gain(information, gradient, whole) > _SETTLED * least or all(
+                    cost - _cost(residuals(point + part * whole), robust) < _SETTLED * least for part in _SHARES))
+            bent = None if robust < np.inf else _bend(residuals, slopes, here, point, move)
             if bent is not None:
                 turn = bounded_step(information, slopes.T @ bent, damping, point + move, region)
                 if _length(turn, information) < _MOST_TURN * _length(move, information):
@@ -176,7 +181,7 @@ def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int,
                 point, here, cost, growth = point + move, there, new, 2.0
                 break
             damping, growth = damping * growth, 2.0 * growth
-    return Solution(point, cost, information, False)
+    return end(False)
 
 
 def _gain(information: Numbers, gradient: Numbers, move: Numbers) -> float:

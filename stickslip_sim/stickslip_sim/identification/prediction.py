@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A scene driven by the measured input of a run that it was not identified from, and how far it is off.
 
-Found are where the run starts, and offset and delay of its sensors; the physics stays that of the scene.
+Found are where the run starts, the offset of its sensors, and their delay where it is not known; the physics stays that
+of the scene.
 """
 
 import math
@@ -74,7 +75,8 @@ def predict(scene: SceneOrName | Identification, run: Run | str | os.PathLike[st
             resolutions: Mapping[str, float] | None = None) -> Prediction:
     """Return what a scene, or an identification, says of another run, driven by what that measured of its inputs.
 
-    Offset and delay of the sensors and the start of the run are found; nothing else of the scene changes.
+    Offsets of the sensors, delays that an identification has not found, and the start of the run are found; nothing
+    else of the scene changes.
     `resolutions` as `identify`.  Raises InputError where the run has not measured what moves the scene, RecordingError,
     and SolverError.
     """
@@ -172,12 +174,17 @@ def _offset(channel: str, unit: str, start: float, values: Numbers) -> FreeParam
 
 
 def _delays(scene: Scene, measurement: SensorReadings, errors: Mapping[str, float]) -> Iterator[FreeParameter]:
-    """Yield the delay of each channel beside the inputs; of an input, where that alone moves the slider."""
+    """Yield the delay of each channel beside the inputs; of an input, where that alone moves the slider.
+
+    One that is known stays: found anew in each run it would make up for errors of the physics.
+    """
     most = max(_LATEST[0] * measurement.period, _LATEST[1])
     outputs = [one.name for one in measurement.channels if one.resolution < np.inf]
     for channel in ['external_force'] if drives_directly(scene) else outputs:
-        start = errors.get(f'sensor.{channel}.delay', 0.0)
-        yield FreeParameter(f'sensor.{channel}.delay', 's', start, start - most, start + most)
+        name = f'sensor.{channel}.delay'
+        known = errors.get(name)
+        yield FreeParameter(name, 's', 0.0, -most, most) if known is None else \
+            FreeParameter(name, 's', known, known, known, (known, 1.0))
 
 
 def _nearest(problem: FitProblem) -> Solution:
@@ -195,7 +202,7 @@ def _nearest(problem: FitProblem) -> Solution:
 
 
 def _least(residuals: Residuals, point: Numbers, problem: FitProblem) -> Solution:
-    return minimise(residuals, point, problem.region, most=_STEPS, tolerance=1e-3)
+    return minimise(residuals, point, problem.region, most=_STEPS, tolerance=1e-3, informs=False)
 
 
 def _other_stretches(problem: FitProblem, begin: Numbers, residuals: Residuals) -> list[Numbers]:

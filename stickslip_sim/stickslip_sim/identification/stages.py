@@ -120,7 +120,8 @@ def _coarse(problem: FitProblem, start: Numbers, slips: Sequence[MeasuredSlip]) 
         limit = max(float(np.quantile(costs, kept)), _FAR_OFF * float(np.median(costs)) if kept == _KEPT[-1] else 0.0)
         near = [slip for slip, cost in zip(slips, costs) if cost <= limit]
         found = minimise(partial(problem.of_slips, slips=near), found.point, problem.region, most=20,
-                         tolerance=1e-2, share=1e-4, robust=ROBUST, step=_COARSE_STEP, steepest=_STEEPEST)
+                         tolerance=1e-2, share=1e-4, robust=ROBUST, step=_COARSE_STEP, steepest=_STEEPEST,
+                         informs=False)
     return found._replace(cost=robust_cost(problem.of_slips(found.point, slips)))
 
 
@@ -333,7 +334,7 @@ def _mean_squares(problem: FitProblem, point: Numbers, part: Stretches) -> Numbe
 
 def _fitted_to(problem: FitProblem, start: Numbers, part: Stretches, robust: float) -> Solution:
     return minimise(partial(problem.of_stretches, stretches=part), start, problem.region, most=10, tolerance=1.0,
-                    share=1e-3, robust=robust)
+                    share=1e-3, robust=robust, informs=False)
 
 
 def _not_followed(problem: FitProblem, point: Numbers, single: Stretches) -> list[MeasuredMotion]:
