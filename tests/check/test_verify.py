@@ -27,10 +27,9 @@ from stickslip_sim.recording import RunFacts, flat_layout, open_bag, read_run
 from stickslip_sim.recording.offline_bag import write_blocks
 from stickslip_sim.report.values import plain
 from stickslip_sim.runs import simulate_events
-from tests.support.check_files import cut
+from tests.support.check_files import cut, verified
 from tests.support.rewritten_bags import rewritten
-from tests.support.tool import Capture
-from tests.support.verify_tool import refused, verified
+from tests.support.tool import Capture, refused
 
 STEPS, EVENTS = 3001, 17     # of that bag
 FAULTS = ('faults.ids=[dry, knock]', 'faults.kinds=[friction_scale, force_pulse]', 'faults.starts=[0.3, 0.7004]',
@@ -225,7 +224,8 @@ class TestCutAndDamaged:
         assert second.endswith(f'up to t = {(steps - 1) / 1000:.9g} s')
 
     def test_before_the_first_message(self, fig8_bag: Path, tmp_path: Path, capsys: Capture) -> None:
-        assert 'cut off before its first message was written' in refused(capsys, cut(fig8_bag, tmp_path / 'cut', 0.01))
+        stump = cut(fig8_bag, tmp_path / 'cut', 0.01)
+        assert 'cut off before its first message was written' in refused(capsys, 'verify', stump)
 
     def test_no_damage_goes_unnoticed_or_is_an_internal_error(self, fig8_bag: Path, tmp_path: Path) -> None:
         """One bit, in the part of the file that holds the run: refused, never "identical"."""
@@ -317,8 +317,8 @@ class TestAlteredAndForeign:
 
     def test_no_run(self, tmp_path: Path, capsys: Capture) -> None:
         (tmp_path / 'empty').mkdir()
-        assert 'no recorded run there' in refused(capsys, tmp_path / 'empty')
-        assert 'no such run' in refused(capsys, tmp_path / 'nothing')
+        assert 'no recorded run there' in refused(capsys, 'verify', tmp_path / 'empty')
+        assert 'no such run' in refused(capsys, 'verify', tmp_path / 'nothing')
 
 
 class TestWhatIf:
@@ -359,5 +359,5 @@ class TestWhatIf:
                 (('--set', 'axis.mass=-1.0'), 'axis.mass = -1.0'),
                 (('--set', 'axis.weight=1.0'), 'axis.weight'),
                 (('--set', 'axis.mass=300.0', '--out', tmp_path), 'a folder that does not exist')):
-            assert reported in refused(capsys, fig8_bag, *words)
+            assert reported in refused(capsys, 'verify', fig8_bag, *words)
         assert list(tmp_path.iterdir()) == []

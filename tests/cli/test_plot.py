@@ -21,9 +21,8 @@ from stickslip_sim.plots.run import TimeWindow
 from stickslip_sim.recording import read_run
 from stickslip_sim.runs import Run, SimulatedRun, simulate, simulate_events
 from stickslip_sim.runs.picture import sampled, windows_of
-from tests.support.check_files import cut
+from tests.support.check_files import cut, verified
 from tests.support.tool import Capture, answered, refused
-from tests.support.verify_tool import verified
 
 BEGINNINGS = {'.png': b'\x89PNG', '.pdf': b'%PDF', '.svg': b'<?xml'}
 

@@ -1,6 +1,6 @@
 # Copyright 2026 The stickslip authors
 # SPDX-License-Identifier: Apache-2.0
-"""Limits files, runs and bags for tests of `stickslip check`, and the tool itself."""
+"""Limits files, runs and bags for tests of `stickslip check` and `verify`, and the tool itself."""
 
 import math
 import shutil
@@ -97,3 +97,10 @@ def checked(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
 def refused(capsys: Capture, *arguments: str | Path, words: Iterable[str] = ()) -> str:
     """Return the one line on standard error, with these words in it."""
     return tool.refused(capsys, 'check', *arguments, words=words)
+
+
+def verified(capsys: Capture, *arguments: str | Path) -> tuple[int, str, str]:
+    """Run `stickslip verify` in this process; return its exit code, standard output and standard error."""
+    code, out, err = tool.answered(capsys, 'verify', *arguments)
+    assert err.count('\n') == (code != 0)
+    return code, out, err

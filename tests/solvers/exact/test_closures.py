@@ -24,8 +24,8 @@ from stickslip_sim.reference import simulate as simulate_reference
 from stickslip_sim.simulation.simulator import Simulator
 from stickslip_sim.solvers import Solver, adaptive, exact, fixed_step
 from tests.support.axes import COMPLIANT, RIGID, Contact, instant, paper_axis, random_axis, run_events
+from tests.support.check_files import verified
 from tests.support.tool import Capture, answered
-from tests.support.verify_tool import verified
 
 pytestmark = pytest.mark.slow
 
