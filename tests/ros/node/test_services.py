@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Services: storms of calls, made-up and endless requests, runs that are recorded and reset; clear answers."""
 
+import json
 import math
 import random
-import re
+import subprocess
 import sys
-from collections.abc import Iterator, Mapping
-from dataclasses import field, make_dataclass
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
 import pytest
@@ -35,12 +34,13 @@ from stickslip_sim.recording import open_bag, read_run
 from stickslip_sim.scene import scene_from_values
 from stickslip_sim.simulation import Fault
 from stickslip_sim.simulation.faults import RULES
+from tests.support import standard_package
 from tests.support.axis_here import AxisHere, axis_here
 from tests.support.made_up_texts import NAMES
 from tests.support.node_processes import recording_into
 from tests.support.rigs import FIELDS, assert_same_states, made_again
 from tests.support.ros_nodes import Asker, Client, live_axis
-from tests.support.waiting import wait_for
+from tests.support.waiting import DEADLINE, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
@@ -361,86 +361,61 @@ class TestRequests:
         assert f'{MANY} parameters is refused: must be at most 1000' in capfd.readouterr().err
 
 
-# What of the package simulation_interfaces (1.0 and later) the node needs; it is not among the wheels.
-
-def message(constants: Mapping[str, int] = MappingProxyType({}), **fields: Any) -> Any:
-    """Return a type of messages with constants, and fields by what makes their first value."""
-    return make_dataclass('Message', [(name, Any, field(default_factory=make)) for name, make in fields.items()],
-                          namespace=dict(constants), slots=True)
-
-
-STOPPED, PLAYING, PAUSED, QUITTING = range(4)
 OK, FAILED, UNSUPPORTED, ALREADY = 1, 4, 0, 101
-RESULT = message({'RESULT_FEATURE_UNSUPPORTED': 0, 'RESULT_OK': 1, 'RESULT_OPERATION_FAILED': 4}, result=int,
-                 error_message=str)
-STATE = message({'STATE_STOPPED': 0, 'STATE_PLAYING': 1, 'STATE_PAUSED': 2, 'STATE_QUITTING': 3}, state=int)
-FEATURES = message({'SIMULATION_RESET': 20, 'SIMULATION_STATE_GETTING': 24, 'SIMULATION_STATE_SETTING': 25,
-                    'SIMULATION_STATE_PAUSE': 26, 'STEP_SIMULATION_SINGLE': 31, 'STEP_SIMULATION_MULTIPLE': 32},
-                   features=list, custom_info=str)
-SERVICES = {
-    'GetSimulatorFeatures': (message(), message(features=FEATURES)),
-    'ResetSimulation': (message({'SCOPE_DEFAULT': 0, 'SCOPE_TIME': 1, 'SCOPE_ALL': 255}, scope=int),
-                        message(result=RESULT)),
-    'StepSimulation': (message(steps=lambda: 1), message(result=RESULT)),
-    'GetSimulationState': (message(), message(state=STATE, result=RESULT)),
-    'SetSimulationState': (message(state=STATE), message({'ALREADY_IN_TARGET_STATE': 101}, result=RESULT)),
-}
-PACKAGE = SimpleNamespace(
-    msg=SimpleNamespace(Result=RESULT, SimulationState=STATE, SimulatorFeatures=FEATURES),
-    srv=SimpleNamespace(**{name: SimpleNamespace(Request=request, Response=response)
-                           for name, (request, response) in SERVICES.items()}))
+STOPPED, PLAYING, PAUSED, QUITTING = range(4)
+Ask = Callable[..., list[Any]]
+
+
+def set_state(state: int) -> str:
+    return f'set_simulation_state {{"state": {{"state": {state}}}}}'
 
 
 class TestStandardServices:
-    @pytest.fixture(autouse=True)
-    def _package(self, monkeypatch: pytest.MonkeyPatch) -> None:
-        monkeypatch.setitem(sys.modules, 'simulation_interfaces', PACKAGE)
+    @pytest.fixture
+    def ask(self, pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch) -> Ask:
+        """Let nodes find the package, built once and kept; return what calls services, each as 'NAME FIELDS'."""
+        folder = pytestconfig.cache.mkdir('simulation_interfaces')
+        for name, value in standard_package.environment(Path(folder)).items():
+            monkeypatch.setenv(name, value)
 
-    @staticmethod
-    def result(axis: AxisHere, kind: str, **request: Any) -> tuple[int, str]:
-        """Return code and text of an answer of the service `KindSimulation` or `KindSimulationState`."""
-        name = next(name for name in SERVICES if name.startswith(kind))
-        service = re.sub('(?<=.)([A-Z])', r'_\1', name).lower()
-        found = axis.call(getattr(PACKAGE.srv, name), service, **request).result
-        return found.result, found.error_message
+        def call(*services: str) -> list[Any]:
+            done = subprocess.run([sys.executable, '-m', 'tests.support.standard_package', *services],
+                                  capture_output=True, text=True, timeout=DEADLINE, check=False)
+            assert done.returncode == 0, done.stderr
+            answers: list[Any] = json.loads(done.stdout)
+            return answers
 
-    def state(self, axis: AxisHere) -> int:
-        answer = axis.call(PACKAGE.srv.GetSimulationState, 'get_simulation_state')
-        assert answer.result.result == OK
-        return int(answer.state.state)
+        return call
 
-    def set_state(self, axis: AxisHere, state: int) -> tuple[int, str]:
-        return self.result(axis, 'Set', state=STATE(state))
+    def test_while_time_runs_by_itself(self, ask: Ask) -> None:
+        with live_axis('time.rate:=200.0', afresh=True) as (process, axis):
+            features, *states, steps, scope = ask(
+                'get_simulator_features', 'get_simulation_state', set_state(PLAYING), set_state(PAUSED),
+                'get_simulation_state', set_state(QUITTING), set_state(STOPPED), 'get_simulation_state',
+                'step_simulation {"steps": 5}', 'reset_simulation {"scope": 1}')
+            wait_for(lambda: axis.latest('slider_state').step == 5, 'the steps')
+            assert ask('get_simulation_state', set_state(PLAYING), 'reset_simulation')[1:] == [
+                {'result': {'result': OK, 'error_message': ''}}] * 2
+        assert features['features']['features'] == [20, 24, 25, 31, 32, 26]
+        assert [answer['result']['result'] for answer in states] == [OK, ALREADY, OK, OK, UNSUPPORTED, OK, OK]
+        assert [answer['state']['state'] for answer in states if 'state' in answer] == [PLAYING, PAUSED, STOPPED]
+        assert steps['result']['result'] == OK
+        assert scope['result']['result'] == UNSUPPORTED
+        assert scope['result']['error_message'].startswith('scope = 1 is refused')
+        assert 'simulation_interfaces' not in process.errors
 
-    def test_while_time_runs_by_itself(self, capfd: pytest.CaptureFixture[str]) -> None:
-        with axis_here('time.rate:=200.0') as axis:
-            wait_for(lambda: axis.node.loop.step > 0, 'steps')
-            assert self.state(axis) == PLAYING
-            features = axis.call(PACKAGE.srv.GetSimulatorFeatures, 'get_simulator_features').features
-            assert features.features == [20, 24, 25, 31, 32, 26]
-            assert self.set_state(axis, PLAYING)[0] == ALREADY
-            for state in (PAUSED, PLAYING, STOPPED):
-                assert self.set_state(axis, state) == (OK, '')
-                assert self.state(axis) == state
-                assert self.set_state(axis, QUITTING)[0] == UNSUPPORTED
-            assert self.result(axis, 'Step', steps=5) == (OK, '')
-            assert axis.node.loop.step == 5
-            code, text = self.result(axis, 'Reset', scope=1)
-            assert (code, text[:20]) == (UNSUPPORTED, 'scope = 1 is refused')
-            assert [self.set_state(axis, PLAYING), self.result(axis, 'Reset')] == [(OK, '')] * 2
-        assert 'simulation_interfaces' not in capfd.readouterr().err
-
-    def test_in_lock_step_and_while_recording(self, tmp_path: Path) -> None:
-        with axis_here('time.mode:=lockstep', *recording_into(tmp_path / 'run')) as axis:
-            assert self.state(axis) == PAUSED
-            assert self.result(axis, 'Step') == (OK, '')
-            for answer, reported in ((self.set_state(axis, PLAYING), 'time moves with ~/step only'),
-                                     (self.result(axis, 'Step', steps=2**64 - 1), 'must be 1 to 100000'),
-                                     (self.result(axis, 'Step', steps=0), 'must be 1 to 100000'),
-                                     (self.set_state(axis, STOPPED), 'refused while recording')):
-                assert answer[0] == FAILED
-                assert reported in answer[1]
-            assert axis.node.loop.step == 1
+    def test_in_lock_step_and_while_recording(self, ask: Ask, tmp_path: Path) -> None:
+        with live_axis('time.mode:=lockstep', *recording_into(tmp_path / 'run'), afresh=True) as (_, axis):
+            state, playing, steps, too_many, none, stop = ask(
+                'get_simulation_state', set_state(PLAYING), 'step_simulation',
+                'step_simulation {"steps": 18446744073709551615}', 'step_simulation {"steps": 0}', set_state(STOPPED))
+            wait_for(lambda: axis.latest('slider_state').step == 1, 'the step')
+        assert state['state']['state'] == PAUSED
+        assert steps['result'] == {'result': OK, 'error_message': ''}
+        for answer, reported in ((playing, 'time moves with ~/step only'), (too_many, 'must be 1 to 100000'),
+                                 (none, 'must be 1 to 100000'), (stop, 'refused while recording')):
+            assert answer['result']['result'] == FAILED
+            assert reported in answer['result']['error_message']
 
     def test_without_the_package_it_says_how_to_get_it(self, monkeypatch: pytest.MonkeyPatch,
                                                        capfd: pytest.CaptureFixture[str]) -> None:
