@@ -123,6 +123,8 @@ def test_numbers_that_are_not_free_are_borders() -> None:
     region = region_of(parameters(STATIC, LIMIT), VALUES)
     assert np.exp(region.inside(np.log([0.06, 0.06]))) == pytest.approx([0.1, 0.1])
     assert np.exp(region_of(parameters(LIMIT), VALUES).low) == pytest.approx([0.15])
+    assert np.exp(region_of(parameters(KINETIC, STATIC), VALUES).high) == pytest.approx([0.2, 0.2])
+    assert np.exp(region_of(parameters(KINETIC, LIMIT), VALUES).high) == pytest.approx([0.15, 0.5])
     held = region_of(parameters(KINETIC, STATIC, LIMIT), VALUES).holding(1, float(np.log(0.12)))
     assert np.exp(held.high) == pytest.approx([0.12, 0.12, 0.5])
     assert np.exp(held.low) == pytest.approx([0.05, 0.12, 0.12])
@@ -131,7 +133,8 @@ def test_numbers_that_are_not_free_are_borders() -> None:
 
 def test_ranges_that_begin_at_0_are_in_order_too() -> None:
     free = [FreeParameter(KINETIC, '', 0.1, 0.0, 0.4), FreeParameter(STATIC, '', 0.15, 0.0, 0.8)]
-    inside = region_of(free, VALUES).inside(np.array([0.75, 0.1]))   # shares of the ranges: 0.3 and 0.08
+    values = {name: value for name, value in VALUES.items() if name != LIMIT}
+    inside = region_of(free, values).inside(np.array([0.75, 0.1]))   # shares of the ranges: 0.3 and 0.08
     assert [one.outer(number) for one, number in zip(free, inside)] == pytest.approx([0.3, 0.3])
 
 

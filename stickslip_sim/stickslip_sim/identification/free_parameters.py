@@ -153,7 +153,8 @@ def _prior(distribution: Distribution, parameter: FreeParameter) -> tuple[float,
     return middle / width, spread / width
 
 
-# Where a fit may go: within the ranges, static friction not below kinetic friction, nor its limit below its start.
+# Where a fit may go: within the ranges, static friction not below kinetic friction, nor its limit below its start,
+# whether they are free or those of the scene.
 #
 # Beyond such a border the axis stays what it is (`axis_model.put_in_order` raises the lower number), so that a fit
 # which goes there finds no way back: its sum of squares does not change with the number that is too low.
@@ -219,14 +220,20 @@ def region_of(parameters: Sequence[FreeParameter], values: Mapping[str, object])
     low = np.array([one.inner(one.low) for one in parameters])
     high = np.array([one.inner(one.high) for one in parameters])
     places = {one.name: k for k, one in enumerate(parameters)}
-    floor, chain = 0.0, []
-    for name, value in _rising(values):
+    floor, ceiling, chain, rising = 0.0, np.inf, [], tuple(_rising(values))
+    for name, value in rising:
         if name in places:
             chain.append(places[name])
             one = parameters[chain[-1]]
             low[chain[-1]] = min(max(low[chain[-1]], one.inner(max(floor, one.low))), high[chain[-1]])
         else:
             floor = max(floor, value)
+    for name, value in reversed(rising):
+        if name in places:
+            one = parameters[places[name]]
+            high[places[name]] = max(one.inner(min(ceiling, one.high)), low[places[name]])
+        else:
+            ceiling = min(ceiling, value)
     if len({parameters[k].logarithmic for k in chain}) > 1:
         return Region(low, high)   # one by its logarithm, and one not: the model alone puts them in order
     found = Region(low, high, chain, np.array([1.0 if one.logarithmic else one.high - one.low for one in parameters]))

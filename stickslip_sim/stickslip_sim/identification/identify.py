@@ -143,18 +143,21 @@ def _channels(problem: FitProblem, fitted: Sequence[Numbers], free: Sequence[Num
 
 
 def _estimates(problem: FitProblem, values: Numbers, known: Certainty, derivation: str) -> tuple[Estimate, ...]:
-    return tuple(_estimate(one, float(value), float(deviation), bool(is_known), derivation)
-                 for one, value, deviation, is_known
-                 in zip(problem.parameters, values, known.deviations, known.known, strict=True))
+    borders = zip(problem.region.low.tolist(), problem.region.high.tolist(), strict=True)
+    return tuple(_estimate(one, float(value), float(deviation), ends if is_known else None, derivation)
+                 for one, value, deviation, is_known, ends
+                 in zip(problem.parameters, values, known.deviations, known.known, borders, strict=True))
 
 
-def _estimate(one: FreeParameter, value: float, deviation: float, is_known: bool, derivation: str) -> Estimate:
+def _estimate(one: FreeParameter, value: float, deviation: float, borders: tuple[float, float] | None,
+              derivation: str) -> Estimate:
+    """Return an estimate; the fit went as far as the `borders`, None where the data do not determine it."""
     inner = one.inner(value)
     ends = one.outer(inner - _SCORE * deviation), one.outer(inner + _SCORE * deviation)
-    margin = _AT_END * one.width
-    at_end = min(inner - one.inner(one.low), one.inner(one.high) - inner) <= margin
+    low, high = borders or (one.inner(one.low), one.inner(one.high))
+    at_end = min(inner - low, high - inner) <= _AT_END * one.width
     own = deviation if one.logarithmic else deviation * (one.high - one.low)
-    kind = AT_BOUND if at_end else FOUND if is_known else NOT_IDENTIFIABLE
+    kind = AT_BOUND if at_end else NOT_IDENTIFIABLE if borders is None else FOUND
     if kind == NOT_IDENTIFIABLE:
         ends, derivation = (one.low, one.high), 'the data do not determine it by itself'
     return Estimate(one.name, one.unit, value, one.start, one.low, one.high, one.logarithmic, own, ends, None, kind,
