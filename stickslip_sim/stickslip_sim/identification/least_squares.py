@@ -79,12 +79,16 @@ _LONGER, _JUMPS, _LONGEST = 10.0, 0.5, 1e-2   # a step so much longer, at which 
 
 
 class Solution(NamedTuple):
-    """Where a fit ended: `point` (k,), the sum of squares `cost`, JᵀJ (k, k) there, and whether it came to an end."""
+    """Where a fit ended: `point` (k,), the sum of squares `cost`, JᵀJ (k, k) there, and whether it came to an end.
+
+    `step` is that of the derivatives.
+    """
 
     point: Numbers
     cost: float
     information: Numbers
     is_settled: bool
+    step: _Step = STEP
 
 
 def slopes_of(residuals: Residuals, point: Numbers, here: Numbers, region: Region, step: _Step,
@@ -143,7 +147,8 @@ def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int,
     the data do not determine.
     Residuals are all NaN where the parameters contradict each other; those beyond `robust` count by their size, not
     their square.  A derivative beyond `steepest` is that of a jump, and is left out.  Where the solution `informs`, its
-    JᵀJ is by central differences: what the data do not determine shows in nothing else.
+    JᵀJ is by central differences: what the data do not determine shows in nothing else.  Else it is the last one of the
+    search, by differences that may be one-sided.
     """
     def jacobian(one_sided: bool) -> tuple[Numbers, Numbers]:
         slopes, weights = slopes_of(residuals, point, here, region, step, one_sided), _weights(here, robust)
@@ -151,12 +156,15 @@ def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int,
         return slopes, slopes if weights is None else slopes * weights[:, None]
 
     def end(is_settled: bool) -> Solution:
-        slopes, weighted = jacobian(False) if informs else (np.eye(len(point)),) * 2
-        return Solution(point, cost, weighted.T @ slopes, is_settled)
+        if informs:
+            slopes, weighted = jacobian(False)
+            return Solution(point, cost, weighted.T @ slopes, is_settled, step)
+        return Solution(point, cost, information, is_settled, step)
 
     point = region.inside(point)
     here = residuals(point)
     cost, damping, growth = _cost(here, robust), _DAMPING, 2.0
+    information: Numbers = np.eye(len(point))
     for _ in range(most):
         slopes, weighted = jacobian(True)
         information, gradient = weighted.T @ slopes, weighted.T @ here
@@ -182,6 +190,12 @@ def minimise(residuals: Residuals, point: Numbers, region: Region, *, most: int,
                 break
             damping, growth = damping * growth, 2.0 * growth
     return end(False)
+
+
+def informed(residuals: Residuals, found: Solution, region: Region) -> Solution:
+    """Return a solution of squares with JᵀJ by central differences."""
+    slopes = slopes_of(residuals, found.point, residuals(found.point), region, found.step)
+    return found._replace(information=slopes.T @ slopes)
 
 
 def _gain(information: Numbers, gradient: Numbers, move: Numbers) -> float:

@@ -18,7 +18,7 @@ from .certainty import certainty_of, is_rejected
 from .direct import friction_at_break_aways, static_residuals
 from .fit_problem import FitProblem, Stretches
 from .free_parameters import Region
-from .least_squares import STEP, Solution, minimise, robust_cost, square_cost, steps_over_jumps
+from .least_squares import STEP, Solution, informed, minimise, robust_cost, square_cost, steps_over_jumps
 from .motions import MeasuredMotion
 from .slip_features import MeasuredSlip
 
@@ -148,6 +148,7 @@ _FEW_STEPS = 4          # of a fit of the others beside it
 _TRIED = 40             # values of a parameter over its range
 _COARSER = 1.0, 1.0, 1.33, 1.6   # times the tolerance of a table that is held, in rounds
 _NEAR = 1e4             # a mean square up to which a table may bar the way in any case
+_JUMPS = 4.0            # of a derivative squared: by so much differences on both sides are larger at a jump
 _FAR = 0.5              # of the sum of squares: so much it must gain far from the run
 _OFF, _TIMES_OFF = 4.0, 100.0    # a mean square of a stretch: of 2 % of a slip, and of the median of all
 _GOOD = 1.2             # a mean square up to that
@@ -231,6 +232,12 @@ def _makes_a_difference(problem: FitProblem, before: Solution, after: Solution) 
 
 
 def _ended(problem: FitProblem, start: Numbers, solution: Solution) -> Ended:
+    """Return the end of a fit, its derivatives central: where that raises one by far, a jump is on the other side."""
+    residuals, before = problem.of_run(), np.diag(solution.information)
+    solution = informed(residuals, solution, problem.region)
+    if problem.model.is_pushed and np.any(np.diag(solution.information) > _JUMPS * before):
+        steps = steps_over_jumps(residuals, solution, problem.region, solution.step)
+        solution = informed(residuals, _of_whole(problem, solution.point, steps), problem.region)
     return Ended(start, solution, is_rejected(problem, solution.point), is_lost(problem, solution.point))
 
 
@@ -266,9 +273,9 @@ def _ahead(problem: FitProblem, start: Numbers) -> Numbers | None:
     return point
 
 
-def _of_whole(problem: FitProblem, start: Numbers) -> Solution:
-    residuals, steps, measured = problem.of_run(), problem.steps, problem.measurement
-    search = partial(minimise, residuals, region=problem.region, tolerance=1e-3,
+def _of_whole(problem: FitProblem, start: Numbers, steps: Numbers | None = None) -> Solution:
+    residuals, steps, measured = problem.of_run(), problem.steps if steps is None else steps, problem.measurement
+    search = partial(minimise, residuals, region=problem.region, tolerance=1e-3, informs=False,
                      far=max(_NEAR, *_lost_from(problem)) * len(measured.times) * len(measured.channels))
     most = _FIRST_STEPS if problem.model.is_pushed else _MOST_STEPS
     found = search(start, step=steps, most=most)
@@ -377,7 +384,7 @@ def _beside(problem: FitProblem, found: Solution) -> Numbers | None:
             if not problem.region.low[k] <= number <= problem.region.high[k]:
                 continue
             trial = minimise(residuals, found.point, problem.region.holding(int(k), float(number)), most=_FEW_STEPS,
-                             tolerance=1.0, share=1e-3, step=problem.steps)
+                             tolerance=1.0, share=1e-3, step=problem.steps, informs=False)
             if trial.cost < best.cost - _NEARER:
                 best = trial
     return None if best is found else best.point
