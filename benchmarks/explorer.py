@@ -21,7 +21,7 @@ OPENED, DRAGS, STEPS = 7, 6, 40
 
 
 def main() -> None:
-    """Open the page of paper_fig8, drag the slider of the feed, print the times; point into a slip, take the picture."""
+    """Open the page of paper_fig8, drag the slider of the feed, print the times; take the picture in a slip."""
     with tempfile.TemporaryDirectory() as name, Browser(Path(name), WIDTH, HEIGHT) as browser:
         page = Path(name) / 'explore.html'
         page.write_text(page_of(load_scene('paper_fig8')), encoding='utf-8')
