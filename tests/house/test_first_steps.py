@@ -31,7 +31,7 @@ DRIVE, SETPOINT, CONTROLLER, LOCKSTEP = (ROOT / 'examples' / f'{name}.py'
 ENCODERS = ('-p', 'drive.velocity:=0.0', '-p', 'joint_interface.enabled:=true', '-p', 'encoder.resolution:=1.0e-6')
 README_AXIS, *README_COMMANDS = (
     shlex.split(line, comments=True) for line in re.findall(r'^    (\S.*)$', (ROOT / 'README.md').read_text(
-        encoding='utf-8').partition('### You know ROS')[2].partition('The wheels lack')[0], re.MULTILINE))
+        encoding='utf-8').partition('### You know ROS')[2].partition('The PyPI wheels')[0], re.MULTILINE))
 
 
 def started(example: str | Path, *arguments: str) -> AbstractContextManager[NodeProcess]:
