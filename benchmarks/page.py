@@ -45,8 +45,9 @@ def quoted(text: str) -> str:
 
 
 def excerpt(text: str, left_out: str) -> str:
-    """Return what a command printed without the time that it took, and "..." for lines that begin like `left_out`."""
+    """Return what a command printed without times and progress, and "..." for lines that begin like `left_out`."""
     lines = []
+    text = re.sub(r'^identifying: .*\n', '', text, flags=re.MULTILINE)    # progress, of a slow machine
     for line in re.sub(r'( simulations) in \S+ s$', r'\1', text, flags=re.MULTILINE).splitlines():
         if not re.match(left_out, line):
             lines.append(line)
