@@ -166,8 +166,8 @@ def _with_unit(unit: str, text: str) -> str:
 def _origin(one: Estimate) -> str:
     if one.kind == NOT_IDENTIFIABLE:
         return f'not identifiable from this run: {one.derivation}'
-    where = {AT_BOUND: f'at the end of its range {one.low:g} to {one.high:g}', FOUND: 'found'}.get(
-        one.kind, 'the best of a model that does not fit')
+    bound = f'at the end of its range {one.low:g} to {one.high:g}, or at a fixed number of the scene'
+    where = {AT_BOUND: bound, FOUND: 'found'}.get(one.kind, 'the best of a model that does not fit')
     low, high = one.best_interval
     interval = '' if math.isnan(low) else f' ({low:.6g} to {high:.6g})'
     return f'{where}{interval}, start {one.start:.6g}: {one.derivation}'
